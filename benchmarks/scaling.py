@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measures the growth of EPG's time: 1000 components against 100 in one target, and 100 targets in one build.
+"""Measures the growth of EPG's time with the components of a target, the targets of a build, and those of a system.
 
 The components are axes of :mod:`big_project`, on a chip with enough pins for them.  The table has the growth of the
 whole time, and the growth without the start of Python: otherwise the start would hide growth that is worse than linear.
@@ -21,13 +21,16 @@ from measure import EPG, JIWY, ROOT, all_in_turns, in_turns, median_ratio, run
 from report import Table, arguments, command_line, milliseconds, show
 
 BORDER = 12.0
+SYSTEM_BORDER = 2.0
+"""Seconds in which the largest system must be checked."""
 START = "epg --version"
 
 
 def main() -> None:
-    options = arguments(__doc__, rounds=9, components=1000, targets=100)
+    options = arguments(__doc__, rounds=9, components=1000, targets=100, system=50)
     with tempfile.TemporaryDirectory() as name:
         tables = [components_table(Path(name), options.components, options.rounds)]
+        tables.append(system_table(Path(name), options.system, options.rounds))
         if shutil.which("cmake"):
             tables.append(targets_table(Path(name), options.targets, max(1, options.rounds // 3)))
     show("scaling", tables, options.write, command_line("scaling"))
@@ -63,6 +66,44 @@ def generate(project: BigProject) -> None:
         [sys.executable, EPG, "generate", "big", *project.arguments, "--output", output],
         EPG_TARGETS_PATH=str(project.targets),
     )
+
+
+# Targets in one system -------------------------------------------------------------------------------------------
+
+
+def system_table(folder: Path, largest: int, rounds: int) -> Table:
+    """The times to check systems with 10 %, 50 % and 100 % of ``largest`` targets."""
+    counts = sorted({max(2, largest * share // 100) for share in (10, 50, 100)})
+    for count in counts:
+        write_system(folder / f"{count}.system.yaml", count)
+    names = {count: f"{count} targets" for count in counts}
+    actions = {
+        names[count]: partial(run, [sys.executable, EPG, "check", folder / f"{count}.system.yaml"]) for count in counts
+    }
+    times = all_in_turns({START: lambda: run([sys.executable, EPG, "--version"]), **actions}, rounds)
+    rows = [
+        [name, milliseconds(statistics.median(values)), f"{median_ratio(times, name, START):.1f} x"]
+        for name, values in times.items()
+    ]
+    most = statistics.median(times[names[counts[-1]]])
+    judged = "holds" if most <= SYSTEM_BORDER else "does not hold"
+    note = f"Aim: {names[counts[-1]]} take at most {SYSTEM_BORDER:g} s: {judged} ({most:.1f} s)."
+    return Table("Targets in one system (epg check)", ["what", "ms", f"of {START}"], rows, [note])
+
+
+def write_system(path: Path, count: int) -> None:
+    """A chain of JIWYs, each of which follows the one before it."""
+    model, bindings = (JIWY / "model").as_posix(), (JIWY / "jiwy.bindings.yaml").as_posix()
+    lines = ["version: 1", "system: chain", "targets:"]
+    for number in range(count):
+        board = ("rpi_pico_freertos", "rpi_pico2_bare_metal")[number % 2]
+        lines.append(f'  robot{number}: {{tcf: {board}_jiwy, model: "{model}", bindings: "{bindings}"}}')
+    lines.append("connections:")
+    for number in range(1, count):
+        for axis in ("pan", "tilt"):
+            lines.append(f"  - {{from: robot{number - 1}/{axis}_publisher, to: robot{number}/{axis}_subscriber}}")
+    lines.append("world: {sends: [robot0/pan_subscriber, robot0/tilt_subscriber]}")
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 # Targets in one build --------------------------------------------------------------------------------------------

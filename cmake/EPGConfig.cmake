@@ -4,6 +4,7 @@
 #   epg_add_target(<name> TCF <file> MODEL <folder> BINDINGS <file> ...)   library EPG::<name>: model, tables, runtime
 #   epg_add_executable(<executable> EPG::<name>)                           firmware with EPG's own main()
 #   epg_add_model(<name> MODEL <folder> [INSTANCES <n>])                   library EPG::<name>: a model alone
+#   epg_add_system(<name> SYSTEM <file>)                                   simulation and images of several targets
 #   epg_use_versions(<SDK> <version> ...)                                  chooses the versions of the project's SDKs
 #   epg_add_simulation(<name> EXECUTABLE <host executable> SCENARIO <file>) target that runs and judges a simulation
 #
@@ -30,6 +31,7 @@ include("${CMAKE_CURRENT_LIST_DIR}/EPGModel.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/EPGConnect.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/EPGTarget.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/EPGSimulation.cmake")
+include("${CMAKE_CURRENT_LIST_DIR}/EPGSystem.cmake")
 # Libraries, and what families of chips define for projects: functions that find an SDK before project().  The user's
 # folders are loaded last, so a user's family may define a function of EPG's anew.
 _epg_user_folders(_epg_roots)

@@ -46,7 +46,6 @@ endfunction()
 # Sets <result> to the command line of `epg connect`, as a list.  The other arguments: see _epg_connect_target().
 function(_epg_connect_command result name)
   _epg_find_python(python)
-  _epg_environment(environment)
   _epg_python_folder(folder)
   set(built_by cmake)
   if(WEST_PYTHON)
@@ -56,11 +55,7 @@ function(_epg_connect_command result name)
   if(SYSBUILD) # this is one image of several, which are built together from the folder above
     get_filename_component(build "${build}" DIRECTORY)
   endif()
-  set(command "${CMAKE_COMMAND}" -E env)
-  foreach(word IN LISTS environment) # on Windows, ';' separates paths, and in CMake the elements of a list
-    string(REPLACE ";" "\\;" word "${word}")
-    list(APPEND command "${word}")
-  endforeach()
+  _epg_environment_command(command)
   list(APPEND command "${python}" "${folder}/__main__.py" connect --name "${name}" ${ARGN}
     --build-dir "${build}" --built-by ${built_by})
   set(${result} "${command}" PARENT_SCOPE)

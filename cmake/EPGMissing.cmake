@@ -68,7 +68,8 @@ endfunction()
 
 # _epg_sdks_to_find(<result> <tool>...)
 #
-# Sets <result> to the tools without those that CMake has found itself: programs, and SDKs whose "target" exists already.
+# Sets <result> to the tools without those that CMake has found itself, which are programs and SDKs whose "target" exists
+# already, and without those of which the project has a copy.
 function(_epg_sdks_to_find result)
   set(sdks "")
   foreach(tool IN LISTS ARGN)
@@ -76,11 +77,30 @@ function(_epg_sdks_to_find result)
     file(READ "${file}" json)
     string(JSON programs ERROR_VARIABLE no_program GET "${json}" programs)
     string(JSON target ERROR_VARIABLE no_target GET "${json}" target)
-    if(no_program AND (no_target OR NOT TARGET "${target}"))
+    _epg_is_in_project(in_project "${json}")
+    if(no_program AND (no_target OR NOT TARGET "${target}") AND NOT in_project)
       list(APPEND sdks "${tool}")
     endif()
   endforeach()
   set(${result} "${sdks}" PARENT_SCOPE)
+endfunction()
+
+# _epg_is_in_project(<result> <json>)
+#
+# Sets <result> to TRUE if the project has one of the files "in_project" of a tool's description.
+function(_epg_is_in_project result json)
+  set(${result} FALSE PARENT_SCOPE)
+  string(JSON count ERROR_VARIABLE none LENGTH "${json}" in_project)
+  if(none)
+    return()
+  endif()
+  math(EXPR last "${count} - 1")
+  foreach(index RANGE ${last})
+    string(JSON file GET "${json}" in_project ${index})
+    if(EXISTS "${CMAKE_SOURCE_DIR}/${file}")
+      set(${result} TRUE PARENT_SCOPE)
+    endif()
+  endforeach()
 endfunction()
 
 # _epg_tools_of_project(<result>)

@@ -77,6 +77,19 @@ function(_epg_run result)
   endif()
 endfunction()
 
+# _epg_environment_command(<result>)
+#
+# Sets <result> to the beginning of a command of a custom target, which runs the rest with these variables.
+function(_epg_environment_command result)
+  _epg_environment(environment)
+  set(command "${CMAKE_COMMAND}" -E env)
+  foreach(word IN LISTS environment) # on Windows, ';' separates paths, and in CMake the elements of a list
+    string(REPLACE ";" "\\;" word "${word}")
+    list(APPEND command "${word}")
+  endforeach()
+  set(${result} "${command}" PARENT_SCOPE)
+endfunction()
+
 # _epg_environment(<result>)
 #
 # Sets <result> to the environment variables for EPG's Python code: a list of <variable>=<value>.

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # epg_add_target(<name> TCF <file> MODEL <folder> BINDINGS <file>
-#                [PLANT <folder> PLANT_BINDINGS <file>] [NODE <name>] [NAMESPACE <name>] [SET <key.key=value>...])
+#                [PLANT <folder> PLANT_BINDINGS <file>] [IOC <file>] [NODE <name>] [NAMESPACE <name>] [SET <key.key=value>...])
+# epg_add_target(<name> SYSTEM <file> [IOC <file>])
 #
 # Makes the library EPG::<name> for a target.  The library itself contains the model, the tables and the runtime, which
 # need no SDK.  The port layer of the platform is compiled in each executable that links the library.  Also makes the
@@ -12,9 +13,11 @@
 #   BINDINGS        the bindings file: which component port belongs to which model port
 #   PLANT           the model of the robot, for a simulation; needs PLANT_BINDINGS
 #   PLANT_BINDINGS  the bindings of the plant
+#   IOC             the project file (.ioc) of CubeMX of the same program: EPG leaves its pins and timers alone
 #   NODE            name of the ROS 2 node, instead of the one in the .tcf
 #   NAMESPACE       namespace of the ROS 2 node, instead of the one in the .tcf
 #   SET             other values of the .tcf, such as "control.period=2 ms"
+#   SYSTEM          the file of a system that has a target <name>, with its files and values
 #
 # Relative paths begin at the current source folder.  It stops with an error if an argument is wrong.  A mistake in the
 # files is reported, and the configure run fails at its end, so that all mistakes are reported together.
@@ -26,10 +29,19 @@
 #   EPG::<name>   a library that epg_add_target() has made
 
 function(epg_add_target name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "TCF;MODEL;BINDINGS;PLANT;PLANT_BINDINGS;NODE;NAMESPACE" "SET")
-  string(CONCAT usage "TCF <file> MODEL <folder> BINDINGS <file> [PLANT <folder> PLANT_BINDINGS <file>] [NODE <name>] "
-    "[NAMESPACE <name>] [SET <key.key=value>...]")
-  _epg_require(epg_add_target "${usage}" "${name}" "${arg_UNPARSED_ARGUMENTS}" "${arg_KEYWORDS_MISSING_VALUES}" TCF MODEL BINDINGS)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "TCF;MODEL;BINDINGS;PLANT;PLANT_BINDINGS;IOC;NODE;NAMESPACE;SYSTEM" "SET")
+  string(CONCAT usage "TCF <file> MODEL <folder> BINDINGS <file> [PLANT <folder> PLANT_BINDINGS <file>] [IOC <file>] "
+    "[NODE <name>] [NAMESPACE <name>] [SET <key.key=value>...]) or epg_add_target(<name> SYSTEM <file> [IOC <file>]")
+  set(required TCF MODEL BINDINGS)
+  if(DEFINED arg_SYSTEM)
+    set(required "")
+    foreach(keyword TCF MODEL BINDINGS PLANT PLANT_BINDINGS NODE NAMESPACE SET)
+      if(DEFINED arg_${keyword})
+        message(FATAL_ERROR "epg_add_target(${name}): the file of the system says this: remove ${keyword}")
+      endif()
+    endforeach()
+  endif()
+  _epg_require(epg_add_target "${usage}" "${name}" "${arg_UNPARSED_ARGUMENTS}" "${arg_KEYWORDS_MISSING_VALUES}" ${required})
   foreach(pair "PLANT;PLANT_BINDINGS" "PLANT_BINDINGS;PLANT")
     list(GET pair 0 one)
     list(GET pair 1 other)
@@ -40,20 +52,30 @@ function(epg_add_target name)
 
   set(here "${CMAKE_CURRENT_SOURCE_DIR}")
   set(output "${CMAKE_BINARY_DIR}/epg/${name}")
-  get_filename_component(model "${arg_MODEL}" ABSOLUTE BASE_DIR "${here}")
-  get_filename_component(bindings "${arg_BINDINGS}" ABSOLUTE BASE_DIR "${here}")
-  set(arguments --tcf "${arg_TCF}" --beside "${here}" --model "${model}" --bindings "${bindings}"
-    --source-dir "${CMAKE_SOURCE_DIR}" --caller "${CMAKE_CURRENT_LIST_FILE}")
-  set(inputs "${bindings}")
-  get_filename_component(tcf "${arg_TCF}" ABSOLUTE BASE_DIR "${here}")
-  if(EXISTS "${tcf}")
-    list(APPEND inputs "${tcf}")
+  set(arguments --source-dir "${CMAKE_SOURCE_DIR}" --caller "${CMAKE_CURRENT_LIST_FILE}")
+  if(DEFINED arg_SYSTEM)
+    get_filename_component(inputs "${arg_SYSTEM}" ABSOLUTE BASE_DIR "${here}")
+    list(APPEND arguments --system "${inputs}")
+  else()
+    get_filename_component(model "${arg_MODEL}" ABSOLUTE BASE_DIR "${here}")
+    get_filename_component(bindings "${arg_BINDINGS}" ABSOLUTE BASE_DIR "${here}")
+    list(PREPEND arguments --tcf "${arg_TCF}" --beside "${here}" --model "${model}" --bindings "${bindings}")
+    set(inputs "${bindings}")
+    get_filename_component(tcf "${arg_TCF}" ABSOLUTE BASE_DIR "${here}")
+    if(EXISTS "${tcf}")
+      list(APPEND inputs "${tcf}")
+    endif()
   endif()
   if(DEFINED arg_PLANT)
     get_filename_component(plant "${arg_PLANT}" ABSOLUTE BASE_DIR "${here}")
     get_filename_component(plant_bindings "${arg_PLANT_BINDINGS}" ABSOLUTE BASE_DIR "${here}")
     list(APPEND arguments --plant "${plant}" --plant-bindings "${plant_bindings}")
     list(APPEND inputs "${plant_bindings}")
+  endif()
+  if(DEFINED arg_IOC)
+    get_filename_component(ioc "${arg_IOC}" ABSOLUTE BASE_DIR "${here}")
+    list(APPEND arguments --ioc "${ioc}")
+    list(APPEND inputs "${ioc}")
   endif()
   foreach(keyword NODE NAMESPACE)
     if(DEFINED arg_${keyword})
@@ -76,7 +98,7 @@ function(epg_add_target name)
   if(NOT good)
     set(connect "")
     get_property(status GLOBAL PROPERTY EPG_EXIT_STATUS)
-    if(status STREQUAL "1") # a mistake in the target's files; after another error, `epg connect` would not run either
+    if(status STREQUAL "1" AND NOT DEFINED arg_SYSTEM) # a mistake in the target's files; after another error, `epg connect` would not run either
       _epg_connect_script(script "${name}" ${arguments})
       set(connect "\nIts ports can be connected in a browser:\n  cmake -P \"${script}\"")
     endif()
@@ -84,7 +106,9 @@ function(epg_add_target name)
     _epg_placeholder("${name}")
     return()
   endif()
-  _epg_connect_target("${name}" ${arguments})
+  if(NOT DEFINED arg_SYSTEM)
+    _epg_connect_target("${name}" ${arguments})
+  endif()
 
   _epg_data_folder(data)
   set(EPG_TARGETS_DIR "${data}/targets")

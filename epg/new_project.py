@@ -21,10 +21,11 @@ from epg.catalog.middleware import Middleware
 from epg.check.communication import CONSOLE
 from epg.check.configuration import Configuration
 from epg.check.editor import USER_FILES, editor_schema
+from epg.check.middleware import needs_component, offered, unoffered_hint
 from epg.check.names import identifier_problem, project_folder_problem
 from epg.check.target_names import check_name, check_sdk_headers
 from epg.data import data_folder, targets_roots
-from epg.diagnostics import Diagnostics, did_you_mean
+from epg.diagnostics import Diagnostics
 from epg.documents.tcf import predefined_tcf_names
 from epg.emit.bindings import new_bindings
 from epg.emit.folder import present_files, write_folder
@@ -116,7 +117,7 @@ def new_project(request: ProjectRequest, diagnostics: Diagnostics) -> NewProject
         return None
     if copied:
         model = _copied_model(copied, place)
-    project = _make(_plan(name, base, model, place, request), base, copied, model, request.roots)
+    project = _make(_plan(name, base, model, place, request, catalog), base, copied, model, request.roots)
     if _EDITOR_SETTINGS not in project.files:
         return project
     schemas = _editor_schemas(catalog, built_in=not request.user_roots)
@@ -204,16 +205,17 @@ def _choose_middleware(
     The middleware ``wanted`` by the user comes first.  The one of ``configuration`` stays if it can be built.
     Otherwise it is the first middleware of the platform that can be built, or "none".
     """
-    offered = target.platform.middlewares
+    possible = offered(target, catalog)
     if wanted is not None:
-        if wanted not in offered:
-            hint = did_you_mean(wanted, offered, "possible")
-            message = f"{target.platform.name} has no middleware '{wanted}'"
+        if wanted not in possible:
+            hint = unoffered_hint(wanted, possible, catalog)
+            message = f"{target.name} has no middleware '{wanted}'"
             diagnostics.error("unknown-middleware", Span.of_argument(wanted), message, hint=hint)
         return wanted
     if configuration is not None and configuration.communication.middleware.builds:
         return ""
-    good = [name for name in offered if (found := catalog.find_middleware(name)) is not None and found.builds]
+    own = target.platform.middlewares
+    good = [name for name in own if (found := catalog.find_middleware(name)) is not None and found.builds]
     return next((name for name in good if name != "none"), "none")
 
 
@@ -238,13 +240,15 @@ def _model_files(request: ProjectRequest, model: Model, diagnostics: Diagnostics
     return (MODEL if place.is_dir() else f"{MODEL}/{place.name}"), copied
 
 
-def _plan(name: str, base: _Base, model: Model, place: str, request: ProjectRequest) -> ProjectPlan:
+def _plan(name: str, base: _Base, model: Model, place: str, request: ProjectRequest, catalog: Catalog) -> ProjectPlan:
     target, configuration = base.target, base.configuration
-    transports = target.platform.middlewares.get(base.middleware, ())
+    transports = offered(target, catalog).get(base.middleware, ())
     components = list(configuration.components.values()) if configuration is not None else []
     middleware = base.written or (configuration.communication.middleware if configuration is not None else None)
     node = middleware is not None and middleware.is_node
-    beside = node and CONSOLE in target.platform.middlewares
+    console = catalog.find_middleware(CONSOLE)
+    ways = target.platform.middlewares.get(CONSOLE)
+    beside = node and console is not None and ways is not None and not needs_component(console, target, ways)
     if configuration is not None and base.written is None:
         beside = configuration.communication.console is not None
     tools = load_tools(request.roots, Diagnostics())
@@ -261,6 +265,7 @@ def _plan(name: str, base: _Base, model: Model, place: str, request: ProjectRequ
         stand_ins=(),
         subscriptions=[str(c.parameters["topic"]) for c in components if c.kind.communication == "subscribe"],
         actuators=[c.name for c in components if any(port.drive for port in c.kind.ports)],
+        carriers=[c.name for c in components if c.kind.transport],
         versions={"epg": epg.__version__, **{tool.name: tool.tested for tool in tools.values() if tool.tested}},
     )
 

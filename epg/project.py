@@ -15,13 +15,17 @@ from typing import Any
 
 from epg.catalog.catalog import Catalog, load_catalog
 from epg.check.bindings import Bindings, load_bindings
-from epg.check.configuration import Configuration, check_configuration
+from epg.check.configuration import Configuration, check_configuration, with_other_code
+from epg.check.merge import apply_settings, merge_chain
 from epg.check.model import check_model_names
+from epg.check.simulated import simulated_part
 from epg.check.target_names import check_driver_headers, check_name, check_paths, check_sdk_headers
+from epg.check.topic_ends import TopicEnd, bind_ends, tcf_of_ends
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
 from epg.documents.cmake_call import caller_span, setting_span
-from epg.documents.tcf import load_tcf_chain, settings_node
+from epg.documents.ioc_file import read_ioc
+from epg.documents.tcf import TcfFile, load_tcf_chain, settings_node
 from epg.documents.text_file import Drafts
 from epg.models import load_model
 from epg.models.model import Model
@@ -29,16 +33,33 @@ from epg.resolve.allocation import Assignment
 from epg.resolve.application import Application
 from epg.resolve.claims import TICK, ClaimKey
 from epg.resolve.resolve import PlantFiles, allocate_hardware, resolve
-from epg.source import Span
+from epg.source import Span, YamlNode
 
 Hardware = Mapping[ClaimKey, Assignment]
 """The assignment of each claim of a component or of the control loop."""
 
 
+Settings = list[tuple[tuple[str, ...], YamlNode]]
+"""Values that replace those of a ``.tcf``: keys, and the value."""
+
 ModelReader = Callable[[Path, Diagnostics], "Model | None"]
 
 
-_PATHS = ("model", "bindings", "plant", "plant_bindings", "beside")
+_PATHS = ("model", "bindings", "plant", "plant_bindings", "ioc", "beside")
+
+
+@dataclass(frozen=True)
+class SystemPart:
+    """The part of a target in the ``file`` of a system.
+
+    ``parts`` of a ``.tcf`` replace its values, and ``ends`` are the ends of the target's connections.  A target is
+    ``simulated`` with its system, or built for its board, which ignores the plant.
+    """
+
+    file: Path
+    parts: Sequence[YamlNode]
+    ends: Sequence[TopicEnd]
+    simulated: bool = False
 
 
 @dataclass(frozen=True)
@@ -46,7 +67,8 @@ class Request:
     """The files and settings of one target.  ``settings`` are texts ``key.key=value``, each with its position.
 
     ``tcf`` is a path relative to ``beside``, or the name of a file in the folders of targets.  ``caller`` is the
-    position of the CMake call that makes the target.  ``drafts`` are texts of an editor that replace files.
+    position of the CMake call that makes the target.  ``ioc`` is the project file of STM32CubeMX of the same program.
+    ``drafts`` are texts of an editor that replace files.  ``system`` is what the file of a system adds.
     """
 
     name: str
@@ -55,11 +77,13 @@ class Request:
     bindings: Path
     plant: Path | None = None
     plant_bindings: Path | None = None
+    ioc: Path | None = None
     settings: Sequence[tuple[str, Span]] = ()
     user_roots: Sequence[Path] = ()
     caller: Span | None = None
     beside: Path = field(default_factory=Path)
     drafts: Drafts = field(default_factory=dict)
+    system: SystemPart | None = None
 
     @property
     def roots(self) -> tuple[Path, ...]:
@@ -80,6 +104,7 @@ def request_of_options(
         bindings=given.get("bindings", Path()),
         plant=given.get("plant"),
         plant_bindings=given.get("plant_bindings"),
+        ioc=given.get("ioc"),
         settings=[(text, setting_span(caller, name, text)) for text in (*settings, *named)],
         user_roots=user_roots,
         caller=caller_span(caller, name) if caller else None,
@@ -113,7 +138,29 @@ def load_configuration(request: Request, catalog: Catalog, diagnostics: Diagnost
     settings = settings_node(request.settings, diagnostics)
     if not chain:
         return None
-    return check_configuration(chain, settings, catalog, diagnostics)
+    settings = [*_of_system(request.system, chain, catalog, diagnostics), *settings]
+    configuration = check_configuration(chain, settings, catalog, diagnostics)
+    if request.ioc is None:
+        return configuration
+    ioc = read_ioc(request.ioc, diagnostics, request.caller, request.drafts)
+    if configuration is None or ioc is None:
+        return None
+    return with_other_code(configuration, ioc, diagnostics)
+
+
+def _of_system(
+    system: SystemPart | None, chain: Sequence[TcfFile], catalog: Catalog, diagnostics: Diagnostics
+) -> Settings:
+    """The values that a system changes in the ``.tcf`` of one of its targets."""
+    if system is None:
+        return []
+    result: Settings = [((), part) for part in system.parts]
+    root = merge_chain(chain)
+    connected = tcf_of_ends(apply_settings(root, result).get("components"), system.ends, catalog, diagnostics)
+    result += [] if connected is None else [((), connected)]
+    if system.simulated:
+        result.append(((), simulated_part(apply_settings(root, result), catalog)))
+    return result
 
 
 def load_application(request: Request, diagnostics: Diagnostics) -> Application | None:
@@ -121,10 +168,15 @@ def load_application(request: Request, diagnostics: Diagnostics) -> Application 
     return load_parts(request, diagnostics).application
 
 
-def load_parts(request: Request, diagnostics: Diagnostics, read_model: ModelReader = load_model) -> Parts:
-    """The application of ``request`` and the parts that it is made of.  Reports the mistakes in all files."""
+def load_parts(
+    request: Request, diagnostics: Diagnostics, read_model: ModelReader = load_model, catalog: Catalog | None = None
+) -> Parts:
+    """The application of ``request`` and the parts that it is made of.  Reports the mistakes in all files.
+
+    A caller with several requests has one ``catalog`` for all of them.
+    """
     check_name(request.name, request.caller or Span("command line"), diagnostics)
-    catalog = load_catalog(request.roots, diagnostics)
+    catalog = catalog or load_catalog(request.roots, diagnostics)
     configuration = load_configuration(request, catalog, diagnostics)
     if configuration is not None:
         span = request.caller or Span("command line")
@@ -133,7 +185,9 @@ def load_parts(request: Request, diagnostics: Diagnostics, read_model: ModelRead
     bindings = load_bindings(request.bindings, diagnostics, request.caller, request.drafts)
     parts = Parts(configuration, model, bindings)
     plant: PlantFiles | None = None
-    if request.plant is not None and request.plant_bindings is not None:
+    simulates = configuration is None or configuration.target.platform.simulates_plant
+    wanted = simulates or request.system is None  # the plant of a system is for its simulation
+    if wanted and request.plant is not None and request.plant_bindings is not None:
         plant_model = read_model(request.plant, diagnostics)
         plant_bindings = load_bindings(request.plant_bindings, diagnostics, request.caller)
         if plant_model is None or plant_bindings is None:
@@ -141,11 +195,18 @@ def load_parts(request: Request, diagnostics: Diagnostics, read_model: ModelRead
         plant = PlantFiles(plant_model, plant_bindings)
     if configuration is None or model is None or bindings is None:
         return parts
+    if request.system is not None:
+        errors = diagnostics.error_count
+        bindings = bind_ends(bindings, model, configuration, request.system.ends, diagnostics)
+        if diagnostics.error_count > errors:
+            return parts
     check_model_names(model, f"{request.name}_model", diagnostics)
     if plant is not None:
         check_model_names(plant.model, f"{request.name}_plant", diagnostics)
     application = resolve(request.name, configuration, model, bindings, plant, diagnostics)
     if application is not None:
+        own = () if request.system is None else (request.system.file,)
+        application = replace(application, files=tuple(sorted({*application.files, *own})))
         check_driver_headers(request.name, configuration, diagnostics)
         check_paths((*application.files, *request.user_roots), diagnostics)
     return parts if diagnostics.has_errors else replace(parts, application=application)

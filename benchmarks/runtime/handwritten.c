@@ -20,7 +20,9 @@
 
 #define PERIOD_NS 1000000u
 #define OVERRUN_LIMIT 10u
+#ifndef PWM_TOP
 #define PWM_TOP 6249u
+#endif
 #define STATES 22
 #define PAN_RAD_PER_COUNT 0.002825173249631109  /* 180 degrees in 1112 counts */
 #define TILT_RAD_PER_COUNT 0.007107675686854735 /* 90 degrees in 221 counts */

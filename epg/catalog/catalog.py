@@ -24,7 +24,6 @@ from epg.catalog.middleware import Middleware, make_middleware
 from epg.catalog.platform import Family, Platform, make_family, make_platform, platform_for
 from epg.catalog.shared_parameters import with_shared_parameters
 from epg.diagnostics import Diagnostics, did_you_mean
-from epg.documents.items import map_of
 from epg.documents.merge import merge, without_nulls
 from epg.documents.yaml_file import load_yaml
 from epg.source import Span, YamlNode
@@ -66,7 +65,7 @@ class Catalog:
         found = set()
         for platform_name in self.names("platform"):
             platform = self._item("platform", platform_name, make_platform)
-            if platform is None:
+            if platform is None or platform.for_systems:
                 continue
             if platform.board is not None:
                 found.add(platform_name)
@@ -133,7 +132,7 @@ class Catalog:
             target = Target(name, board, soc, on_chip)
             if not self._check_target(target):
                 return None, True
-            return replace(target, clocks=with_frequencies(soc.clocks, map_of(board.node, "clocks"))), True
+            return replace(target, clocks=with_frequencies(soc.clocks, target.board_clocks)), True
         return None, False
 
     def _check_target(self, target: Target) -> bool:
@@ -156,7 +155,9 @@ class Catalog:
         if not platform.by_family:
             return platform if platform.board is not None or soc.family in platform.families else None
         family = self.find_family(soc.family)
-        return platform_for(platform, family) if family is not None and platform.name in family.platforms else None
+        if family is None or platform.name not in family.platforms:
+            return None
+        return platform_for(platform, family, soc.peripherals)
 
     def _splits(self, name: str) -> list[tuple[str, str]]:
         """The pairs of board and platform whose names together are ``name``; ("", platform) for a platform alone."""

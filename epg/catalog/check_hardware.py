@@ -19,6 +19,12 @@ from epg.source import Span, YamlNode
 def check_soc(node: YamlNode, diagnostics: Diagnostics) -> None:
     """Checks a chip alone: all pins, slots, instances and dividers that it names must exist."""
     check_clocks(node, diagnostics)
+    known = map_of(node, "clocks")
+    for name in map_of(node, "cubemx", "clocks"):
+        if name not in known:
+            hint = did_you_mean(name, known, "known")
+            span = node["cubemx"]["clocks"].key_span(name)
+            diagnostics.error("unknown-name", span, f"unknown clock '{name}'", hint=hint)
     pins = _pins(node.get("pins"), diagnostics)
     for name, peripheral in map_of(node, "peripherals").items():
         _peripheral(name, peripheral, pins, diagnostics)
@@ -86,7 +92,8 @@ def check_platform(node: YamlNode, diagnostics: Diagnostics) -> None:
 
 def _left_to_families(node: YamlNode, diagnostics: Diagnostics) -> None:
     """Reports keys of a platform with ``by_family`` that must be in the files of the families instead."""
-    for key in ("classes", "middlewares", "usb_names", "templates", "shared", "sdk", "products"):
+    of_families = ("classes", "middlewares", "usb_names", "console_on_components", "templates", "shared", "sdk")
+    for key in (*of_families, "products"):
         if key in node:
             message = f"a platform with 'by_family' must not set '{key}': it depends on the family of chips"
             diagnostics.error("only-with", node.key_span(key), message, hint="move it to families/<name>/family.yaml")
@@ -98,6 +105,9 @@ def check_family(node: YamlNode, platforms: Sequence[str], diagnostics: Diagnost
         if platform.value not in platforms:
             hint = did_you_mean(str(platform.value), platforms, "in platforms/")
             diagnostics.error("unknown-name", platform.span, f"there is no platform '{platform.value}'", hint=hint)
+    started = node.get("tick_starts", "class")
+    if started is not None and started.value not in texts_of(node, "classes"):
+        _unknown("class", started, texts_of(node, "classes"), diagnostics)
 
 
 def check_target(target: Target, diagnostics: Diagnostics) -> None:
@@ -117,7 +127,8 @@ def check_target(target: Target, diagnostics: Diagnostics) -> None:
             hint = f"it has the pins {pin_list(soc.pins)}"
             notes = [Note("the chip", soc.span)]
             diagnostics.error("unknown-name", span, f"{soc.title} has no pin '{name}'", hint=hint, notes=notes)
-    check_stated(node.get("clocks"), soc.clocks, soc.title, diagnostics)
+    for stated in (node.get("clocks"), node.get("devicetree", "clocks")):
+        check_stated(stated, soc.clocks, soc.title, diagnostics)
     for child in map_of(node, "onboard").values():
         for element in child["classes"].elements():
             if element.value not in soc.classes:
@@ -162,6 +173,14 @@ def _peripheral(name: str, node: YamlNode, pins: Sequence[str], diagnostics: Dia
                 if pin not in pins:
                     hint = f"it has the pins {pin_list(pins)}" if pins else ""
                     diagnostics.error("unknown-name", span, f"this chip has no pin '{pin}'", hint=hint)
+    for key in ("bits", "triggered_by"):
+        for instance, value in map_of(node, key).items():
+            named = [(instance, node[key].key_span(instance))]
+            named += [(str(other.value), other.span) for other in value.elements()]
+            for other, span in named:
+                if other not in instances:
+                    hint = did_you_mean(other, instances, "instances")
+                    diagnostics.error("unknown-name", span, f"'{name}' has no instance '{other}'", hint=hint)
     if "frequency" in names_of(node.get("agree")) and "divider" not in node:
         diagnostics.error("unknown-name", node.key_span("agree"), f"'{name}' has no divider that sets a frequency")
 

@@ -144,6 +144,10 @@ def _claims(node: YamlNode, parameters: Mapping[str, YamlNode], diagnostics: Dia
     """Checks ``claims``: their pins and parameters must exist, and each pin must be claimed once."""
     pins = texts_of(node, "pins")
     used: dict[str, Span] = {}
+    parts = {
+        f"{name}.{part}": child for name, p in parameters.items() for part, child in map_of(p, "properties").items()
+    }
+    parameters = {**parameters, **parts}
     for claim in map_of(node, "claims").values():
         for pin in map_of(claim, "signals").values():
             _known("pin", pin, pins, diagnostics)

@@ -26,6 +26,9 @@ from epg.catalog.platform import Platform
 from epg.documents.items import flag_of, integer_range, map_of, pin_names, text_of, texts_of, values_of
 from epg.source import Span, YamlNode
 
+COUNT_BITS = 32
+"""The bits of counters for which a chip's file states nothing else."""
+
 
 @dataclass(frozen=True)
 class Divider:
@@ -52,7 +55,8 @@ class Peripheral:
 
     ``sources`` holds the input of the divider of each instance; it is empty without a divider.  ``pins`` holds the pins
     that each slot can reach: (instance, slot) -> pins, both counted from 0.  ``functions`` holds the numbers of their
-    alternate functions, if the chip has them: (instance, slot) -> pin -> number.
+    alternate functions, if the chip has them: (instance, slot) -> pin -> number.  ``bits`` holds the bits of each
+    counter, ``triggered_by`` the instances that can start an instance in hardware.
     """
 
     name: str
@@ -65,6 +69,8 @@ class Peripheral:
     sources: tuple[Source, ...]
     pins: Mapping[tuple[int, int], tuple[str, ...]]
     functions: Mapping[tuple[int, int], Mapping[str, int]]
+    bits: tuple[int, ...]
+    triggered_by: Mapping[int, frozenset[int]]
     span: Span
 
     @property
@@ -103,6 +109,7 @@ class ResourceClass:
     title: str
     peripheral: str | None  # None: the class uses pins only
     whole: bool  # True if a claim takes all slots of an instance
+    widest: bool  # True if instances with more bits are better
     instances: tuple[str, ...]  # the possible instances; empty: all
     signals: Mapping[str, str]
     neighbours: tuple[str, ...]
@@ -123,8 +130,11 @@ class Soc:
     """A chip.  The number of a pin in C is its index in ``pins``.
 
     A chip with ``automatic_pins`` has no real pins: EPG numbers the signals, up to this number.  With ``free_names``,
-    users may give them any names.  ``memory`` is the RAM in bytes, None if it is not stated.  ``clocks`` have the
-    frequencies of the chip's file.
+    users may give them any names.  ``memory`` is the RAM in bytes, None if it is not stated.  ``needs`` are names of
+    tools, for platforms that its family implements.  ``clocks`` have the frequencies of the chip's file.
+    ``cubemx_name`` is the beginning of its name in STM32CubeMX, or empty; ``cubemx_clocks`` maps clocks to their keys
+    there.  The port layer takes ``dma_streams`` when a target starts: ``dma_users`` maps a class to their number for
+    each claim that carries bytes.
     """
 
     name: str
@@ -135,8 +145,13 @@ class Soc:
     automatic_pins: int
     free_names: bool
     memory: int | None
+    needs: tuple[str, ...]
     peripherals: Mapping[str, Peripheral]
     classes: Mapping[str, ResourceClass]
+    cubemx_name: str
+    cubemx_clocks: Mapping[str, str]
+    dma_streams: tuple[str, ...]
+    dma_users: Mapping[str, int]
     files: tuple[Path, ...]  # its own, and those of the chips that it extends
     span: Span
 
@@ -225,6 +240,22 @@ class Target:
         name = self.platform.tick
         return None if self.platform.tick_is_optional and name not in self.soc.classes else name
 
+    @property
+    def tick_starts(self) -> str:
+        """The resource class that starts together with the timer of the control loop; empty if there is none."""
+        return "" if self.platform.family is None else self.platform.family.tick_starts
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """The names of the tools that a build needs: those of the platform, the family and the chip."""
+        return self.platform.needs if self.platform.family is None else (*self.platform.needs, *self.soc.needs)
+
+    @property
+    def board_clocks(self) -> Mapping[str, YamlNode]:
+        """The frequencies of clocks in the board's file.  On Zephyr, those of its devicetree replace the others."""
+        of_devicetree = map_of(self.board.node, "devicetree", "clocks") if self.platform.has_nodes else {}
+        return {**map_of(self.board.node, "clocks"), **of_devicetree}
+
     def resource_class(self, name: str) -> ResourceClass | None:
         """The resource class ``name`` as this target implements it, or None if it does not."""
         return self.soc.classes.get(name) if name in self.platform.classes else None
@@ -245,8 +276,13 @@ def make_soc(node: YamlNode, folder: Path) -> Soc:
         automatic_pins=count,
         free_names=flag_of(node["pins"], "names_are_free") if automatic is not None else False,
         memory=memory.value if memory is not None and isinstance(memory.value, int) else None,
+        needs=texts_of(node, "needs"),
         peripherals=MappingProxyType(peripherals),
         classes=MappingProxyType(classes),
+        cubemx_name=text_of(node["cubemx"], "name") if "cubemx" in node else "",
+        cubemx_clocks=MappingProxyType({k: str(v.value) for k, v in map_of(node, "cubemx", "clocks").items()}),
+        dma_streams=texts_of(node, "dma", "streams"),
+        dma_users=MappingProxyType({k: int(str(v.value)) for k, v in map_of(node, "dma", "users").items()}),
         files=_files(node, folder / "soc.yaml"),
         span=node["soc"].span,
     )
@@ -311,8 +347,20 @@ def _peripheral(name: str, node: YamlNode, soc: YamlNode) -> Peripheral:
         sources=_sources(divider, instances) if divider else (),
         pins=MappingProxyType(pins),
         functions=MappingProxyType(functions),
+        bits=tuple(_bits(node, instance) for instance in instances),
+        triggered_by=MappingProxyType(
+            {
+                instances.index(instance): frozenset(map(instances.index, texts_of(node, "triggered_by", instance)))
+                for instance in map_of(node, "triggered_by")
+            }
+        ),
         span=soc["peripherals"].key_span(name),
     )
+
+
+def _bits(node: YamlNode, instance: str) -> int:
+    stated = node.get("bits", instance)
+    return stated.value if stated is not None and isinstance(stated.value, int) else COUNT_BITS
 
 
 def _resource_class(name: str, node: YamlNode, soc: YamlNode) -> ResourceClass:

@@ -99,7 +99,8 @@ class NeedsBound:
 class KindClaim:
     """A claim of each component of a kind.
 
-    ``signals`` maps signals of the resource class to names of pins, ``attributes`` maps attributes to parameters.  If
+    ``signals`` maps signals of the resource class to names of pins, ``attributes`` maps attributes to parameters, or
+    to parts of parameters: ``span.angle``.  If
     ``output``, the pins are outputs that have a safe level.
     """
 

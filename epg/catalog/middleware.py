@@ -24,6 +24,7 @@ class Middleware:
     """A way in which topics travel between a target and the outside.
 
     ``platforms`` maps platforms on which the middleware runs, although their own files do not name it, to transports.
+    ``families`` are the only families of chips that it supports there; all if there are none.
     ``connection`` is "stream" (bytes, carried by a transport of the platform), "own" or "none".  ``uses`` names the
     parts that the generator must add to a target: "node", "services", "signals", "parameters", "capture", "jog".
     ``quality`` are the policies that it has in addition to reliability and history: "durability", "deadline",
@@ -37,6 +38,7 @@ class Middleware:
     summary: str
     connection: str
     platforms: Mapping[str, tuple[str, ...]]
+    families: tuple[str, ...]
     uses: tuple[str, ...]
     quality: tuple[str, ...]
     needs: tuple[str, ...]
@@ -73,6 +75,7 @@ def make_middleware(node: YamlNode, folder: Path) -> Middleware:
         summary=text_of(node, "summary"),
         connection=text_of(node, "connection"),
         platforms=MappingProxyType({name: texts_of(node, "platforms", name) for name in map_of(node, "platforms")}),
+        families=texts_of(node, "families"),
         uses=texts_of(node, "uses"),
         quality=texts_of(node, "quality"),
         needs=texts_of(node, "needs"),

@@ -8,7 +8,7 @@ contain it and name the platform (``by_family``).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -34,9 +34,11 @@ class PortLayer:
     """What a platform and a family both have.
 
     ``middlewares`` maps each middleware to its transports, the default first.  With ``has_usb_names``, a target
-    configuration can set the names of the USB device.  ``sdk`` is the SDK whose name of the board is passed to a build,
-    or "".  ``headers`` are the headers of the SDK that code includes by their name without a folder.  ``needs`` are
-    names of tools.  ``products`` are the files that a build makes for the user, the most useful first.
+    configuration can set the names of the USB device.  With ``has_console_on_components``, a console beside another
+    middleware can use a component in place of a transport of the port layer.  ``sdk`` is the SDK whose name of the
+    board is passed to a build, or "".  ``headers`` are the headers of the SDK that code includes by their name without
+    a folder.  ``needs`` are names of tools.  ``products`` are the files that a build makes for the user, the most
+    useful first.
     """
 
     name: str
@@ -44,6 +46,7 @@ class PortLayer:
     classes: tuple[str, ...]
     middlewares: Mapping[str, tuple[str, ...]]
     has_usb_names: bool
+    has_console_on_components: bool
     templates: tuple[str, ...]
     sdk: str
     headers: tuple[str, ...]
@@ -62,19 +65,24 @@ class Platform(PortLayer):
     platform with the parts that the chip's ``family`` adds.  If ``builds`` is False, there is no port layer yet:
     targets can be checked but not built.
 
+    A user does not choose a platform ``for_systems``: the simulation of a system does.
+
     ``tick`` is the resource class that times the control loop, None if the system software times it.  With
     ``tick_is_optional``, the system software also times it on chips without this class.  With ``has_nodes``, a
-    component can name a devicetree node instead of pins.  ``shared`` are folders beside this one whose templates the
-    platform uses, too.  ``built_by`` is "cmake" or "west".  ``program`` is the CMake target of the executable if the
-    SDK makes it.
+    component can name a devicetree node instead of pins.  With ``extends_counters``, its drivers extend counters of
+    encoders in interrupts, so that they do not depend on the control period.  ``shared`` are folders beside this one
+    whose templates the platform uses, too.  ``built_by`` is "cmake" or "west".  ``program`` is the CMake target of the
+    executable if the SDK makes it.
     """
 
     families: tuple[str, ...]
     board: str | None  # the only board of the platform; the only target then has the name of the platform
     simulates_plant: bool
+    for_systems: bool
     tick: str | None
     tick_is_optional: bool
     has_nodes: bool
+    extends_counters: bool
     builds: bool
     shared: tuple[str, ...]
     built_by: str
@@ -106,9 +114,20 @@ class Platform(PortLayer):
 
 @dataclass(frozen=True)
 class Family(PortLayer):
-    """The port layer of a family of chips for ``platforms`` that are ``by_family``."""
+    """The port layer of a family of chips for ``platforms`` that are ``by_family``.
+
+    ``own`` are instances of peripherals that it uses itself, such as TIM7.  Its port layer starts the peripherals of
+    the class ``tick_starts`` together with the timer of the control loop: by a trigger, or as ``start_otherwise`` says.
+    ``usb`` holds the default names and numbers of its USB device, if they are data, and the ``serial_digits``;
+    ``usb_needs`` are names of tools that a target with it needs.
+    """
 
     platforms: tuple[str, ...]
+    own: tuple[str, ...]
+    tick_starts: str
+    start_otherwise: str
+    usb: Mapping[str, object]
+    usb_needs: tuple[str, ...]
 
 
 def _values(node: YamlNode, folder: Path, category: str, layer: type[PortLayer]) -> dict[str, Any]:
@@ -120,6 +139,7 @@ def _values(node: YamlNode, folder: Path, category: str, layer: type[PortLayer])
         "name": text_of(node, category),
         "middlewares": MappingProxyType({name: texts_of(node, "middlewares", name) for name in offered}),
         "has_usb_names": flag_of(node, "usb_names"),
+        "has_console_on_components": flag_of(node, "console_on_components"),
         "products": tuple(Product(**values_of(product, Product)) for product in products),
         "node": node,
         "folder": folder,
@@ -142,15 +162,28 @@ def make_platform(node: YamlNode, folder: Path) -> Platform:
 
 def make_family(node: YamlNode, folder: Path) -> Family:
     """The family that a checked ``family.yaml`` describes."""
-    return Family(**_values(node, folder, "family", Family))
+    starts = node.get("tick_starts")
+    values = _values(node, folder, "family", Family) | {
+        "tick_starts": text_of(starts, "class") if starts is not None else "",
+        "start_otherwise": text_of(starts, "otherwise") if starts is not None else "",
+        "usb": MappingProxyType({key: child.value for key, child in map_of(node, "usb").items()}),
+    }
+    return Family(**values)
 
 
-def platform_for(platform: Platform, family: Family) -> Platform:
-    """A platform ``by_family`` with the parts that ``family`` adds."""
-    own = ("classes", "middlewares", "has_usb_names", "templates", "sdk", "products")
+def platform_for(platform: Platform, family: Family, peripherals: Collection[str]) -> Platform:
+    """A platform ``by_family`` with the parts that ``family`` adds for a chip with these ``peripherals``.
+
+    Where the names of the USB device are data of the family, only chips with a peripheral ``usb`` have this transport.
+    """
+    missing = ("usb",) if family.usb and "usb" not in peripherals else ()
+    own = ("classes", "has_usb_names", "has_console_on_components", "templates", "sdk", "products")
     return replace(
         platform,
         **{name: getattr(family, name) for name in own},
+        middlewares=MappingProxyType(
+            {name: tuple(t for t in transports if t not in missing) for name, transports in family.middlewares.items()}
+        ),
         headers=(*family.headers, *platform.headers),
         needs=(*platform.needs, *family.needs),
         family=family,

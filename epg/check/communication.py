@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 from epg.catalog.catalog import Catalog, Target
 from epg.catalog.middleware import Middleware
-from epg.check.compose import communication_schema, options_schema, typed_options
-from epg.check.middleware import check_lack, check_offer, offered, unoffered_hint
+from epg.check.compose import communication_schema, console_schema, typed_options
+from epg.check.middleware import check_lack, check_offer, needs_component, offered, unoffered_hint
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.schema import extended_from, validate
 from epg.quantity import QuantityError, parse_quantity
@@ -56,15 +56,23 @@ class Communication:
     keep_cycles: int  # control cycles that wait for publications with `every`; 0: only the newest one is published
     parameter_request: int | None  # bytes of the buffer for requests; None: as many as the parameters need
     console: Middleware | None  # the console that runs beside the middleware
+    console_transport: str | None  # the component with its bytes; None: the platform has a transport for it
     console_options: Mapping[str, object]
     options: Mapping[str, object]
-    usb: Mapping[str, object]  # the stated ones of vendor_id, product_id, manufacturer, product, serial
+    usb: Mapping[str, object]  # vendor_id, product_id, manufacturer, product, serial: stated, or the family's
     span: Span  # position of the middleware's name, else of the section
 
     @property
     def middlewares(self) -> tuple[Middleware, ...]:
         """The middleware, and the console if one runs beside it."""
         return (self.middleware,) if self.console is None else (self.middleware, self.console)
+
+
+def tools_for(target: Target, communication: Communication) -> set[str]:
+    """The names of the tools that a build needs: for the target, its middlewares, and its USB device."""
+    family = target.platform.family
+    usb = family.usb_needs if family is not None and communication.usb else ()
+    return {*target.needs, *usb, *(name for used in communication.middlewares for name in used.needs)}
 
 
 def check_communication(
@@ -79,21 +87,29 @@ def check_communication(
     transport = root.get("communication", "transport")
     name, possible = _choice(middleware, target, catalog, diagnostics)
     reported = transport is not None and transport.value in root["components"] and transport.value not in carries
-    if target and transport and name in possible and not reported:
-        _check_transport(transport, name, target, possible[name], carries, diagnostics)
-    period = _seconds(root.get("communication", "period"), PERIOD, _PERIODS, diagnostics)
     found = catalog.find_middleware(name) if name in possible else None
+    if target and transport and found is not None and not reported:
+        _check_transport(transport, found, target, possible[name], carries, diagnostics)
+    period = _seconds(root.get("communication", "period"), PERIOD, _PERIODS, diagnostics)
     if target is None or found is None:
         return None
     check_offer(target, found, diagnostics)
     if node is not None and not validate(node, communication_schema(found), diagnostics):
         return None
+    where = transport or middleware or node or root["target"]
     chosen = str(transport.value) if transport else next(iter(possible[name]), None)
-    check_lack(target, chosen, transport or middleware or node or root["target"], diagnostics)
+    if chosen is None and needs_component(found, target, possible[name]):
+        chosen = _only_carrier(found.name, carries, set(), "communication.transport", where, diagnostics)
+    check_lack(target, chosen, where, diagnostics)
     parameters = root.get("communication", "parameters")
-    beside, console_options = _console(
-        root.get("communication", "console"), found, possible, target, catalog, diagnostics
-    )
+    console = root.get("communication", "console")
+    beside, console_options = _console(console, found, possible, target, catalog, diagnostics)
+    console_transport = None
+    unknown = chosen is None and needs_component(found, target, possible[name])  # reported already
+    if beside is not None and console is not None and not unknown:
+        console_transport = _console_transport(console, beside, possible, target, chosen, carries, diagnostics)
+    consoles_own = target.platform.middlewares.get(CONSOLE, ())
+    uses_usb = chosen == "usb" or (beside is not None and console_transport is None and "usb" in consoles_own)
     return Communication(
         middleware=found,
         transport=chosen,
@@ -104,9 +120,10 @@ def check_communication(
         keep_cycles=_whole(root.get("communication", "keep_cycles")) or 0,
         parameter_request=_whole(root.get("communication", "parameters", "request")),
         console=beside,
+        console_transport=console_transport,
         console_options=console_options,
         options=typed_options(found, node, diagnostics),
-        usb=_usb(root.get("communication", "usb"), target, diagnostics),
+        usb=_usb(root.get("communication", "usb"), target, uses_usb, diagnostics),
         span=(middleware or node or root).span,
     )
 
@@ -120,44 +137,95 @@ def _choice(
     if target and name not in possible:
         possible = offered(target, catalog)
     if target and node and name not in possible:
-        message = f"{target.platform.name} has no middleware '{name}'"
+        message = f"{target.name} has no middleware '{name}'"
         hint = unoffered_hint(name, possible, catalog)
         diagnostics.error("unknown-middleware", node.span, message, hint=hint, notes=extended_from(node))
     return name, possible
 
 
+_COMPONENT_HINT = "add a component that carries bytes, such as a uart, and name it in 'transport'"
+
+
 def _check_transport(
     node: YamlNode,
-    middleware: str,
+    middleware: Middleware,
     target: Target,
     own: Sequence[str],
     carries: Mapping[str, bool],
     diagnostics: Diagnostics,
 ) -> None:
     """Reports a transport that is neither one of the platform nor a component that carries bytes."""
-    known = [*own, *(name for name, able in carries.items() if able)] if own else []
+    component = needs_component(middleware, target, own)
+    known = [*own, *(name for name, able in carries.items() if able)] if own or component else []
     if node.value not in known:
-        message = f"'{middleware}' on {target.platform.name} has no transport '{node.value}'"
-        hint = (
-            did_you_mean(str(node.value), known, "it has") if known else "remove it: this middleware has no transport"
-        )
+        message = f"'{middleware.name}' on {target.platform.name} has no transport '{node.value}'"
+        hint = _COMPONENT_HINT if component else "remove it: this middleware has no transport"
+        if known:
+            hint = did_you_mean(str(node.value), known, "it has")
         diagnostics.error("unknown-transport", node.span, message, hint=hint, notes=extended_from(node))
 
 
-def _usb(node: YamlNode | None, target: Target, diagnostics: Diagnostics) -> Mapping[str, object]:
-    """The stated names and numbers of the target as a USB device.
+def _only_carrier(
+    user: str, carries: Mapping[str, bool], taken: set[str | None], key: str, where: YamlNode, diagnostics: Diagnostics
+) -> str | None:
+    """The only component that can carry the bytes of ``user``.  Reports that there is none, or more than one."""
+    able = [name for name, carrying in carries.items() if carrying and name not in taken]
+    if len(able) == 1:
+        return able[0]
+    message = f"'{user}' needs a component that carries its bytes"
+    hint = f"name one of them in '{key}': {', '.join(able)}" if able else _COMPONENT_HINT
+    diagnostics.error("missing-transport", where.span, message, hint=hint, notes=extended_from(where))
+    return None
+
+
+def _console_transport(
+    node: YamlNode,
+    console: Middleware,
+    possible: _Offers,
+    target: Target,
+    taken: str | None,
+    carries: Mapping[str, bool],
+    diagnostics: Diagnostics,
+) -> str | None:
+    """The component that carries the bytes of a console beside the middleware.
+
+    None if it uses a transport of the platform, and after reporting a mistake.
+    """
+    stated = node.get("transport") if node.is_mapping else None
+    own = possible.get(console.name, ())
+    if not needs_component(console, target, own):
+        if stated is None or (target.platform.has_console_on_components and stated.value in own):
+            return None
+        if not target.platform.has_console_on_components:
+            message = f"the console on {target.platform.name} has a transport of its own"
+            diagnostics.error("not-on-platform", stated.span, message, hint="remove it", notes=extended_from(stated))
+            return None
+    if stated is None:
+        return _only_carrier("console", carries, {taken}, "communication.console.transport", node, diagnostics)
+    _check_transport(stated, console, target, (), carries, diagnostics)
+    if stated.value == taken:
+        message = f"'{taken}' cannot carry the bytes of two middlewares"
+        hint = "name another component"
+        diagnostics.error("transport-twice", stated.span, message, hint=hint, notes=extended_from(stated))
+    return str(stated.value)
+
+
+def _usb(node: YamlNode | None, target: Target, used: bool, diagnostics: Diagnostics) -> Mapping[str, object]:
+    """The stated names and numbers of the target as a USB device; if it is ``used``, also the family's defaults.
 
     Reports them on a platform that sets the names in another way.  A platform without USB ignores them: another target
     of the same robot may use them.
     """
-    if node is None:
-        return {}
     platform = target.platform
+    defaults = platform.family.usb if used and platform.family is not None else {}
+    names = {key: value for key, value in defaults.items() if key != "serial_digits"}
+    if node is None:
+        return names
     if not platform.has_usb_names and any("usb" in transports for transports in platform.middlewares.values()):
         message = f"a target configuration cannot set the names of the USB device on {platform.name}"
         hint = f"remove 'usb', and set the names in the build: the documentation of {platform.name} lists the settings"
         diagnostics.error("not-on-platform", node.span, message, hint=hint, notes=extended_from(node))
-    return {key: node[key].value for key in sorted(node.keys)}
+    return dict(sorted({**names, **{key: node[key].value for key in node.keys}}.items()))
 
 
 def _diagnostics(node: YamlNode | None, middleware: Middleware, diagnostics: Diagnostics) -> Fraction:
@@ -189,10 +257,10 @@ def _console(
         return None, {}
     found = catalog.find_middleware(CONSOLE) if CONSOLE in possible or CONSOLE in offered(target, catalog) else None
     if found is None:
-        message = f"{target.platform.name} has no middleware '{CONSOLE}'"
+        message = f"{target.name} has no middleware '{CONSOLE}'"
         diagnostics.error("unknown-middleware", node.span, message, hint="remove it", notes=extended_from(node))
         return None, {}
-    if node.is_mapping and not validate(node, options_schema(found), diagnostics):
+    if node.is_mapping and not validate(node, console_schema(found), diagnostics):
         return None, {}
     own = target.platform.middlewares.get(CONSOLE, ())
     check_lack(target, next(iter(own), None), node, diagnostics)

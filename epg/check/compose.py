@@ -70,13 +70,24 @@ def communication_schema(middleware: Middleware) -> dict[str, Any]:
 
 
 def options_schema(middleware: Middleware) -> dict[str, Any]:
-    """The JSON Schema of a map with the options of ``middleware`` only, for a console beside another middleware."""
+    """The JSON Schema of a map with the options of ``middleware`` only."""
     return {
         "type": "object",
         "properties": {option.name: parameter_schema(option) for option in middleware.options},
         "required": [option.name for option in middleware.options if option.required],
         "additionalProperties": False,
     }
+
+
+def console_schema(console: Middleware) -> dict[str, Any]:
+    """The JSON Schema of ``communication.console``: the options of a console beside another middleware."""
+    options = options_schema(console)
+    transport = {
+        "type": "string",
+        "minLength": 1,
+        "description": "the component that carries its bytes, such as a uart",
+    }
+    return {**options, "properties": {"transport": transport, **options["properties"]}}
 
 
 def typed_options(middleware: Middleware, node: YamlNode | None, diagnostics: Diagnostics) -> Mapping[str, object]:

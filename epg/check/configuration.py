@@ -19,9 +19,11 @@ from epg.check.fail_safe import check_fail_safe
 from epg.check.merge import apply_settings, merge_chain
 from epg.check.messages import message_files, with_messages
 from epg.check.names import identifier_problem, normal_namespace
+from epg.check.other_code import NO_OTHER_CODE, OtherCode, check_other_code
 from epg.check.topics import Use, check_names, check_quality
 from epg.check.uses import Used, used_components
 from epg.diagnostics import Diagnostics, Note, did_you_mean
+from epg.documents.ioc_file import Ioc
 from epg.documents.items import map_of
 from epg.documents.schema import extended_from, load_schema, validate
 from epg.documents.tcf import TcfFile
@@ -69,7 +71,7 @@ class Configuration:
     """The contents of a ``.tcf`` and of the files that it extends.
 
     ``files`` are the files that were read.  ``absent`` are the files that do not exist but would be read if they did.
-    ``root`` is the merged tree with positions.
+    ``root`` is the merged tree with positions.  ``others`` is the use of the chip by other code of the program.
     """
 
     target: Target
@@ -81,6 +83,7 @@ class Configuration:
     files: tuple[Path, ...]
     absent: tuple[Path, ...]
     root: YamlNode
+    others: OtherCode = NO_OTHER_CODE
 
 
 def check_configuration(
@@ -134,6 +137,12 @@ def check_configuration(
     )
 
 
+def with_other_code(configuration: Configuration, ioc: Ioc, diagnostics: Diagnostics) -> Configuration:
+    """The configuration with the use of the chip that a project file of STM32CubeMX states.  Reports mistakes in it."""
+    others = check_other_code(ioc, configuration.target, configuration.root["target"].span, diagnostics)
+    return replace(configuration, others=others, files=(*configuration.files, ioc.path))
+
+
 def _with_clocks(target: Target, root: YamlNode, diagnostics: Diagnostics) -> Target:
     """The target with the frequencies of clocks in the ``.tcf``.  Reports the mistakes in them.
 
@@ -147,8 +156,7 @@ def _with_clocks(target: Target, root: YamlNode, diagnostics: Diagnostics) -> Ta
         node = replace(node, value=MappingProxyType(stated))
     if not check_stated(node, target.clocks, target.soc.title, diagnostics):
         return target
-    of_board = map_of(target.board.node, "clocks")
-    return replace(target, clocks=with_frequencies(target.soc.clocks, {**of_board, **stated}))
+    return replace(target, clocks=with_frequencies(target.soc.clocks, {**target.board_clocks, **stated}))
 
 
 def _components(

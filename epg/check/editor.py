@@ -21,13 +21,13 @@ from typing import Any
 from epg.catalog.catalog import Catalog, Kind, Target
 from epg.catalog.middleware import Middleware
 from epg.check.compose import communication_schema, component_schema
-from epg.check.middleware import offered
+from epg.check.middleware import needs_component, offered
 from epg.documents.schema import load_schema
 from epg.quantity import SPELLINGS, units_of
 
 Schema = dict[str, Any]
 
-USER_FILES = ("tcf", "bindings", "model", "scenario")
+USER_FILES = ("tcf", "bindings", "model", "scenario", "system")
 TARGET_FILES = ("board", "component", "family", "middleware", "platform", "soc", "tool")
 _NUMBER = r"([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][-+]?[0-9]+)?"
 _COMPLETE = {"required": ["target"], "not": {"required": ["extends"]}}
@@ -158,7 +158,8 @@ def _middlewares(targets: Iterable[Target], catalog: Catalog, named: bool) -> li
     platforms: dict[str, list[Target]] = {}
     for target in targets:
         family = target.platform.family
-        platforms.setdefault(f"{target.platform.name} {family.name if family else ''}", []).append(target)
+        offers = sorted(target.platform.middlewares.items())
+        platforms.setdefault(f"{target.platform.name} {family.name if family else ''} {offers}", []).append(target)
     rules: list[Schema] = []
     for group in platforms.values():
         possible = offered(group[0], catalog)
@@ -167,7 +168,9 @@ def _middlewares(targets: Iterable[Target], catalog: Catalog, named: bool) -> li
         for name, transports in possible.items():
             using = _communication({"middleware": {"const": name}}, required=["middleware"])
             stated: Schema = {"enum": [*transports, None]}
-            if transports and named:
+            middleware = catalog.find_middleware(name)
+            carried = middleware is not None and needs_component(middleware, group[0], transports)
+            if named and (transports or carried):
                 stated = {"anyOf": [stated, {"type": "string"}]}
             transport = _communication({"transport": stated})
             rules.append({"if": {"allOf": [chosen, using]}, "then": transport})

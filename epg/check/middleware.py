@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from epg.catalog.catalog import Catalog, Target
 from epg.catalog.middleware import Middleware
@@ -15,14 +15,19 @@ from epg.source import YamlNode
 def offered(target: Target, catalog: Catalog) -> dict[str, tuple[str, ...]]:
     """The possible middlewares of a target, with their transports.
 
-    First the middlewares that the platform names, then those whose own file names the platform.
+    First the middlewares that the platform names, then those whose own file names the platform and the family of chips.
     """
     result = dict(target.platform.middlewares)
     for name in catalog.names("middleware"):
         middleware = catalog.find_middleware(name) if name not in result else None
-        if middleware is not None and target.platform.name in middleware.platforms:
+        if middleware is not None and target.platform.name in middleware.platforms and _supports(middleware, target):
             result[name] = middleware.platforms[target.platform.name]
     return result
+
+
+def _supports(middleware: Middleware, target: Target) -> bool:
+    family = target.platform.family
+    return family is None or not middleware.families or family.name in middleware.families
 
 
 def unoffered_hint(name: str, possible: Iterable[str], catalog: Catalog) -> str:
@@ -30,7 +35,13 @@ def unoffered_hint(name: str, possible: Iterable[str], catalog: Catalog) -> str:
     middleware = catalog.find_middleware(name) if name in catalog.names("middleware") else None
     if middleware is None or not middleware.platforms:
         return did_you_mean(name, possible, "it has")
-    return f"it has: {', '.join(sorted(possible))}; '{name}' runs on: {', '.join(sorted(middleware.platforms))}"
+    chips = f" (chips: {', '.join(middleware.families)})" if middleware.families else ""
+    return f"it has: {', '.join(sorted(possible))}; '{name}' runs on: {', '.join(sorted(middleware.platforms))}{chips}"
+
+
+def needs_component(middleware: Middleware, target: Target, own: Sequence[str]) -> bool:
+    """True if only a component can carry the bytes of ``middleware``: the port layer has no transport of its own."""
+    return middleware.connection == "stream" and target.platform.family is not None and not own
 
 
 def check_offer(target: Target, middleware: Middleware, diagnostics: Diagnostics) -> None:

@@ -26,6 +26,9 @@ def add_target_arguments(parser: argparse.ArgumentParser, *, required: bool) -> 
     )
     parser.add_argument("--plant", type=Path, metavar="FOLDER", help="model of the plant, for targets on the host")
     parser.add_argument("--plant-bindings", type=Path, metavar="FILE", help="bindings of the plant's ports")
+    parser.add_argument(
+        "--ioc", type=Path, metavar="FILE", help="project file of STM32CubeMX of the program: pins and timers in use"
+    )
     add_settings(parser)
     parser.add_argument("--node", help="name of the ROS 2 node; default: as in the .tcf")
     parser.add_argument("--namespace", help="namespace of the ROS 2 node; default: as in the .tcf")

@@ -6,9 +6,11 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from epg.cli.arguments import add_target_arguments, request_of
+from epg.cli.system import SYSTEM_FILES, is_system, read_system, system_data, system_text
 from epg.diagnostics import Diagnostics
 
 if TYPE_CHECKING:
@@ -16,7 +18,12 @@ if TYPE_CHECKING:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("files", nargs="*", metavar="FILE", help=".tcf files to check separately")
+    parser.add_argument(
+        "files",
+        nargs="*",
+        metavar="FILE",
+        help=f".tcf files to check separately, and systems (*{SYSTEM_FILES}) to check with all of their targets",
+    )
     parser.add_argument(
         "--format", choices=("text", "json", "sarif"), help="form of the output; sarif: SARIF 2.1.0, for CI and editors"
     )
@@ -38,13 +45,18 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     options.json = options.json or options.format == "json"
     request = request_of(options, "target")
     hardware: dict[str, Hardware] = {}
+    read = (read_system(Path(name), request.user_roots, diagnostics) for name in options.files)
+    systems = [checked for checked in read if checked is not None]
+    for checked in systems:
+        hardware |= {name: hardware_of(application) for name, application in checked.applications.items()}
     missing = _missing(options)
     if options.model and not missing:
         application = load_application(request, diagnostics)
-        hardware = {options.tcf: hardware_of(application)} if application is not None else {}
+        hardware |= {options.tcf: hardware_of(application)} if application is not None else {}
     else:
         catalog = load_catalog(request.roots, diagnostics)
-        for name in [*options.files, *([options.tcf] if options.tcf else [])]:
+        alone = [name for name in options.files if not is_system(Path(name))]
+        for name in [*alone, *([options.tcf] if options.tcf else [])]:
             found = load_hardware(replace(request, tcf=name), catalog, diagnostics)
             hardware |= {name: found} if found is not None else {}
         for model in filter(None, (options.model, options.plant)):
@@ -52,11 +64,13 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         for bindings in filter(None, (options.bindings, options.plant_bindings)):
             load_bindings(bindings, diagnostics)
     if not (options.files or options.tcf or missing):
-        sys.stderr.write("epg check: name a .tcf, or give --tcf, --model and --bindings\n")
+        sys.stderr.write("epg check: name a .tcf or a system, or give --tcf, --model and --bindings\n")
         return 2
     if diagnostics.has_errors or options.format == "sarif":
         return 0  # main.py prints the diagnostics
     if not options.json:
+        for checked in systems:
+            print(f"{system_text(checked)}\n")
         _print_hardware(hardware if options.hardware else {})
         together = f" in each file separately; to check them together, add {missing}" if missing else ""
         print(f"no errors{together}")
@@ -65,6 +79,8 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         from epg.emit.hardware import hardware_data
 
         data: dict[str, Any] = {"diagnostics": [item.data() for item in diagnostics]}
+        if systems:
+            data["systems"] = [system_data(checked) for checked in systems]
         if options.hardware:
             data["hardware"] = {name: hardware_data(found) for name, found in hardware.items()}
         sys.stdout.write(to_json(data))

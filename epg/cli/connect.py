@@ -115,6 +115,7 @@ def _job(options: argparse.Namespace) -> Job:
         bindings=Path(os.path.abspath(request.bindings)),
         plant=_absolute(request.plant),
         plant_bindings=_absolute(request.plant_bindings),
+        ioc=_absolute(request.ioc),
         beside=beside,
     )
     source, build = _absolute(options.source_dir), _absolute(options.build_dir)

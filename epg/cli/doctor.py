@@ -104,7 +104,10 @@ def _wanted(tools: Mapping[str, Tool], project: Path | None) -> Mapping[str, Too
     bootstrap.ensure()  # reading the project's files needs the package for YAML
     from epg.connect.build.tools import tools_of_project
 
-    return {name: tools[name] for name in tools_of_project(project) if name in tools}
+    wanted = {name: tools[name] for name in tools_of_project(project) if name in tools}
+    return {
+        name: tool for name, tool in wanted.items() if not any((project / file).is_file() for file in tool.in_project)
+    }
 
 
 def _report_project(items: list[Item], as_json: bool) -> int:

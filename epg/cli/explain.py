@@ -98,7 +98,7 @@ def _wires(description: dict[str, Any], name: str) -> list[dict[str, Any]]:
 
 def _hardware(description: dict[str, Any], wire: dict[str, Any]) -> dict[str, Any]:
     component = description["components"][wire["component"]]
-    return {key: component[key] for key in ("resources", "pins", "dividers")}
+    return {key: component[key] for key in ("resources", "pins", "dividers", "starts") if key in component}
 
 
 def _text(description: dict[str, Any], wire: dict[str, Any]) -> str:
@@ -132,6 +132,10 @@ def _text(description: dict[str, Any], wire: dict[str, Any]) -> str:
     for claim, divider in component["dividers"].items():
         frequency, remark = divider_text(divider)
         rows.append(("frequency", frequency, f"{claim}: {remark}"))
+    rows += [
+        ("start", start, f"{claim}: with the timer of the control loop")
+        for claim, start in component.get("starts", {}).items()
+    ]
     width = max(len(row[0]) for row in rows)
     second = max(len(row[1]) for row in rows)
     lines = [f"{a.ljust(width)}  {b.ljust(second)}  {c}".rstrip() for a, b, c in rows]

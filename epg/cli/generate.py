@@ -8,16 +8,23 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from epg.cli.arguments import add_target_arguments, request_of
+from epg.cli.arguments import add_target_arguments, request_of, user_roots
 from epg.cli.output import add_output_arguments, update_folder, write_warnings
 from epg.diagnostics import Diagnostics, UserError
+
+if TYPE_CHECKING:
+    from epg.project import Request
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", help="name of the target: prefix of its C symbols")
     add_output_arguments(parser)
-    add_target_arguments(parser, required=True)
+    parser.add_argument(
+        "--system", type=Path, metavar="FILE", help="the system that has this target, instead of --tcf and the others"
+    )
+    add_target_arguments(parser, required=False)
 
 
 @contextmanager
@@ -41,12 +48,25 @@ def mistakes_in_templates(user_roots: Sequence[Path], diagnostics: Diagnostics) 
         raise
 
 
+def _request(options: argparse.Namespace, diagnostics: Diagnostics) -> Request:
+    """The request of the target: from a system, or from the files that the options name."""
+    if options.system is None:
+        missing = [f"--{key}" for key in ("tcf", "model", "bindings") if getattr(options, key) is None]
+        if missing:
+            options.parser.error(f"the following arguments are required: {', '.join(missing)}")
+        return request_of(options, options.name)
+    from epg.cli.system import system_of, target_of
+
+    system, caller = system_of(options, diagnostics)
+    return system.request(target_of(system, options.name, caller, diagnostics), user_roots(), options.ioc)
+
+
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.emit.cmake import PathNames
     from epg.emit.outputs import application_outputs
     from epg.project import load_application
 
-    request = request_of(options, options.name)
+    request = _request(options, diagnostics)
     app = diagnostics.checked(load_application(request, diagnostics))
     if not app.target.platform.builds:
         span = app.target_span

@@ -8,8 +8,9 @@ import sys
 from pathlib import Path
 
 from epg.catalog.catalog import load_catalog
-from epg.cli.arguments import add_settings, request_of
+from epg.cli.arguments import add_settings, request_of, user_roots
 from epg.cli.report import to_json
+from epg.cli.system import is_system, read_system
 from epg.diagnostics import Diagnostics
 from epg.project import Request
 
@@ -18,7 +19,9 @@ PICTURES = ("application", "schedule", "wiring")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "tcf", metavar="TARGET.tcf", help="target configuration: a file, or the name of a predefined .tcf"
+        "tcf",
+        metavar="TARGET.tcf",
+        help="target configuration: a file, or the name of a predefined .tcf; or a system (*.system.yaml)",
     )
     what = "application: topics, pins, components and model; schedule: one control cycle; wiring: the pins of the board"
     parser.add_argument("--what", choices=PICTURES, default="application", help=what)
@@ -30,25 +33,33 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
-    if options.what != "wiring" and (options.model is None or options.bindings is None):
+    system = is_system(Path(options.tcf))
+    if not system and options.what != "wiring" and (options.model is None or options.bindings is None):
         sys.stderr.write(f"epg graph: --what {options.what} needs --model FOLDER and --bindings FILE\n")
         return 2
     request = request_of(options, options.name or "target")
     title = options.name or Path(options.tcf).stem
-    text = (
-        _wiring(request, title, diagnostics)
-        if options.what == "wiring"
-        else _flow(options, request, title, diagnostics)
-    )
+    if system:
+        text = _system(Path(options.tcf), diagnostics)
+    elif options.what == "wiring":
+        text = _wiring(request, title, diagnostics)
+    else:
+        text = _flow(options, request, title, diagnostics)
     if options.output is not None:
         from epg.emit.writer import write_outputs
 
         write_outputs(options.output.parent, {options.output.name: text})
     elif options.json:
-        sys.stdout.write(to_json({"what": options.what, "svg": text}))
+        sys.stdout.write(to_json({"what": "system" if system else options.what, "svg": text}))
     else:
         sys.stdout.write(text)
     return 0
+
+
+def _system(path: Path, diagnostics: Diagnostics) -> str:
+    from epg.system.picture import draw_system
+
+    return draw_system(diagnostics.checked(read_system(path, user_roots(), diagnostics)))
 
 
 def _wiring(request: Request, title: str, diagnostics: Diagnostics) -> str:

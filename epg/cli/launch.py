@@ -7,15 +7,25 @@ import argparse
 import re
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from epg.cli.arguments import user_roots
 from epg.cli.robot import write_files
+from epg.cli.system import is_system, read_system
 from epg.diagnostics import Diagnostics
 from epg.source import Span
+
+if TYPE_CHECKING:
+    from epg.ros.robot import Robot
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "targets", nargs="+", type=Path, metavar="TARGET", help="a build folder, or a <name>.json of a generated target"
+        "targets",
+        nargs="+",
+        type=Path,
+        metavar="TARGET",
+        help="a build folder, a <name>.json of a generated target, or a system (*.system.yaml)",
     )
     parser.add_argument(
         "--board",
@@ -70,8 +80,17 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.ros.programs import ProgramRequest, plan_programs
     from epg.ros.robot import load_robots
     from epg.ros.systemd_units import Installation, unit_files
+    from epg.system.robots import boards_of, robots_of
 
-    robots = load_robots(options.targets, diagnostics)
+    robots: list[Robot] = []
+    boards: dict[str, list[str]] = {}
+    for path in options.targets:
+        system = read_system(path, user_roots(), diagnostics)
+        if system is not None:
+            robots += robots_of(system)
+            boards |= boards_of(system)
+        elif not is_system(path):
+            robots += load_robots([path], diagnostics)
     given = {
         option: _assignments(option, texts, diagnostics)
         for option, texts in (
@@ -82,6 +101,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         )
     }
     diagnostics.stop_if_errors()
+    given["--board"] = boards | given["--board"]
     check_target_names(robots, given, diagnostics)
     paths = given["--program"]
     wiring = Wiring(given["--board"], given["--device"], options.port, paths)

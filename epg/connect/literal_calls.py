@@ -53,10 +53,11 @@ class Call:
 
 @dataclass(frozen=True)
 class Unknown:
-    """A place that only CMake can evaluate.  ``message`` says why."""
+    """A place that only CMake can evaluate.  ``message`` says why.  Without ``hint``, configuring helps."""
 
     span: Span
     message: str
+    hint: str = ""
 
 
 def not_literal(word: Word) -> Unknown:

@@ -79,6 +79,8 @@ class Loaded:
         yield from (path for file in self.chain for path in file.absent)
         if request.plant_bindings is not None:
             yield request.plant_bindings
+        if request.ioc is not None:
+            yield request.ioc
         if parts.application is not None:
             yield from parts.application.files
         yield from files_of_model(request.model, parts.model)

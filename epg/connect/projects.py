@@ -19,7 +19,7 @@ from epg.diagnostics import Diagnostics
 from epg.project import Request
 from epg.source import Span
 
-_ONE = ("TCF", "MODEL", "BINDINGS", "PLANT", "PLANT_BINDINGS", "NODE", "NAMESPACE")
+_ONE = ("TCF", "MODEL", "BINDINGS", "PLANT", "PLANT_BINDINGS", "IOC", "NODE", "NAMESPACE", "SYSTEM")
 _NEEDED = ("TCF", "MODEL", "BINDINGS")
 _LEVELS = 8
 """The number of folders, from one upwards, that are searched for the project around it."""
@@ -69,7 +69,7 @@ def find_jobs(folder: Path, diagnostics: Diagnostics) -> list[Job]:
     hint = f"configure with '{configure}', which runs the project's CMake files, then start 'epg connect' again"
     for place in unknown:
         report = diagnostics.warning if requests else diagnostics.error
-        report("cmake-not-understood", place.span, place.message, hint=hint)
+        report("cmake-not-understood", place.span, place.message, hint=place.hint or hint)
     return [
         Job(
             request,
@@ -151,6 +151,11 @@ def _request(call: Call, unknown: list[Unknown]) -> Request | None:
             unknown.append(not_literal(word))
             return None
     values, settings = _keywords(call.words[1:])
+    if "SYSTEM" in values:
+        message = "this target is part of a system, which 'epg connect' cannot open"
+        hint = "open its own files: epg connect --tcf FILE --model FOLDER --bindings FILE"
+        unknown.append(Unknown(call.span, message, hint))
+        return None
     missing = [keyword for keyword in _NEEDED if keyword not in values]
     if not call.words or missing:
         lacking = f"{missing[0]} is missing" if call.words else "its name is missing"
@@ -169,6 +174,7 @@ def _request(call: Call, unknown: list[Unknown]) -> Request | None:
         bindings=_path(here, values["BINDINGS"]),
         plant=_path(here, values["PLANT"]) if "PLANT" in values else None,
         plant_bindings=_path(here, values["PLANT_BINDINGS"]) if "PLANT_BINDINGS" in values else None,
+        ioc=_path(here, values["IOC"]) if "IOC" in values else None,
         settings=written,
         user_roots=_user_roots(call),
         caller=name.span,

@@ -112,7 +112,8 @@ class Emitter:
             "service": service,
             "access": access_of(app, bool(service.parameters)),
             "ros_services": ros_services_of(app),
-            "transport": self._transport(),
+            "transport": self._transport(app.communication.transport),
+            "console_transport": self._transport(app.communication.console_transport),
             "middleware_code": self._middleware_code(service.middleware),
             "console_code": self._middleware_code(service.console),
             "model_hash": model_hash(app.model, app.parameters),
@@ -161,12 +162,12 @@ class Emitter:
         template = self.env.get_template(f"middlewares/{view.name}/code.c.j2")
         return Code(str(template.make_module().globals(view)).strip("\n"))  # type: ignore[attr-defined]
 
-    def _transport(self) -> Code:
-        """The C expression of the transport component, which carries the middleware's bytes.
+    def _transport(self, name: str | None) -> Code:
+        """The C expression of a transport component, which carries the bytes of a middleware.
 
-        Empty if the middleware has no such component.
+        Empty if ``name`` is not such a component.
         """
-        component = self.macros.components.get(self.app.communication.transport or "")
+        component = self.macros.components.get(name or "")
         if component is None or not component.kind.transport:
             return Code("")
         return self.macros.expression(component, "transport")

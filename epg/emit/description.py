@@ -51,7 +51,7 @@ def describe(emitter: Emitter, names: PathNames, hash: str = "") -> str:
             "domain": app.communication.domain,
             "diagnostics": float(app.communication.diagnostics),
             "console": app.communication.console is not None,
-            **({"usb": dict(sorted(app.communication.usb.items()))} if app.communication.usb else {}),
+            **({"usb": _usb(app)} if app.communication.usb else {}),
         },
         "model": _model(app.model, names),
         "parameters": dict(sorted(app.parameters.items())),
@@ -76,6 +76,13 @@ def describe(emitter: Emitter, names: PathNames, hash: str = "") -> str:
     return json.dumps(data, indent=2, ensure_ascii=False) + "\n"
 
 
+def _usb(app: Application) -> dict[str, Any]:
+    """The names of the USB device, and the digits of its serial number if the family states them."""
+    family = app.target.platform.family
+    digits = {key: value for key, value in (family.usb if family else {}).items() if key == "serial_digits"}
+    return dict(sorted({**digits, **app.communication.usb}.items()))
+
+
 def _model(model: Model, names: PathNames) -> dict[str, Any]:
     return {
         "name": model.name,
@@ -88,6 +95,7 @@ def _model(model: Model, names: PathNames) -> dict[str, Any]:
 
 
 def _component(component: ResolvedComponent, symbol: str, names: PathNames) -> dict[str, Any]:
+    starts = {claim: found.start for claim, found in component.claims.items() if found.start}
     return {
         "kind": component.kind.name,
         "symbol": symbol,
@@ -102,6 +110,7 @@ def _component(component: ResolvedComponent, symbol: str, names: PathNames) -> d
         "dividers": {
             claim: divider for claim, found in component.claims.items() if (divider := describe_divider(found))
         },
+        **({"starts": starts} if starts else {}),
         "uses": {use: used.component for use, used in component.uses.items()},
     }
 

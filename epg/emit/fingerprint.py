@@ -34,6 +34,7 @@ def application_hash(app: Application, generated: Mapping[str, str]) -> str:
     digest = hashlib.sha256()
     configured = [target.name, target.board.name, target.platform.name]
     configured += [communication.middleware.name, communication.transport or ""]
+    configured += [f"console.transport={communication.console_transport}"] if communication.console_transport else []
     configured += [f"{name}={value}" for name, value in communication.options.items()]
     configured += [f"console.{name}={value}" for name, value in communication.console_options.items()]
     _add(digest, "configuration", json.dumps(configured).encode())

@@ -31,6 +31,7 @@ def hardware_data(assignments: Mapping[ClaimKey, Assignment]) -> list[dict[str, 
             "resource": found.resource,
             "pins": dict(sorted(found.pin_names.items())),
             "divider": describe_divider(found),
+            **({"start": found.start} if found.start else {}),
         }
         for (component, claim), found in assignments.items()
     ]
@@ -42,6 +43,7 @@ def hardware_rows(assignments: Mapping[ClaimKey, Assignment]) -> list[tuple[str,
     for key, entry in zip(assignments, hardware_data(assignments)):
         frequency, remark = divider_text(entry["divider"]) if entry["divider"] else ("", "")
         remark = "exactly" if key == TICK and remark else remark
+        remark = "; ".join(filter(None, (remark, entry.get("start", ""))))
         pins = ", ".join(f"{signal} {pin}" for signal, pin in entry["pins"].items())
         user = "(control loop)" if key == TICK else f"{entry['component']}.{entry['claim']}"
         rows.append((user, entry["resource"], pins, frequency, remark))

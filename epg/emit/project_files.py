@@ -58,6 +58,9 @@ class ProjectPlan:
     ``console`` is True if the user can type commands to the firmware, ``node`` if the firmware is a ROS 2 node, and
     ``plant`` if the project has a simulated robot.  ``axes`` are the axes that its scenario moves.
 
+    ``actuators`` and ``carriers`` are components of ``extends``: those that move something, and those that carry the
+    bytes of a middleware.
+
     ``model`` is the path of the model's folder relative to the project.  ``versions`` are the versions of EPG and of
     the tools, by name.
     """
@@ -74,6 +77,7 @@ class ProjectPlan:
     stand_ins: Sequence[StandIn]
     subscriptions: Sequence[str]
     actuators: Sequence[str]
+    carriers: Sequence[str]
     versions: Mapping[str, str]
     plant: bool = False
     axes: Sequence[MovedAxis] = ()

@@ -7,21 +7,26 @@ and which pins this peripheral reaches.  Allocation has three parts:
 1. Check each claim alone, and report its mistakes.
 2. For each peripheral, find places for all of its claims (:mod:`epg.resolve.search`).
 3. If there are no such places, report the claims that exclude each other (:mod:`epg.resolve.conflict`).
+
+Claims that still have a choice then get better places (:mod:`epg.resolve.preferences`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from types import MappingProxyType
 
 from epg.catalog.hardware import Peripheral, ResourceClass, Target
+from epg.check.other_code import NO_OTHER_CODE, OtherCode
 from epg.diagnostics import Diagnostics, Note, did_you_mean
-from epg.resolve.claims import Claim, ClaimKey
+from epg.resolve.claims import TICK, Claim, ClaimKey
 from epg.resolve.conflict import Candidate, report_conflicts
 from epg.resolve.divisions import Dividers, Divisions, asked_frequency, input_frequency
+from epg.resolve.other_code import places_left
 from epg.resolve.pins import Pins
+from epg.resolve.preferences import start_of, triggering_place, widest_places
 from epg.resolve.search import WHOLE, Demand, Place, find_places
 
 __all__ = ["Assignment", "allocate"]
@@ -66,6 +71,10 @@ class Assignment:
     """Signal -> the number of its pin's alternate function, for chips that have such numbers."""
     node: str = ""
     """The devicetree node that is used instead of pins and a peripheral."""
+    start: str = ""
+    """The start of the instance, if it starts together with the timer of the control loop, in words."""
+    longest_gap: Fraction | None = None
+    """The longest time in seconds between two readings of a counter; None if the greatest speed is not known."""
 
 
 @dataclass(frozen=True)
@@ -82,25 +91,30 @@ class _Placed:
     places: frozenset[Place]
 
 
-def allocate(claims: Sequence[Claim], target: Target, diagnostics: Diagnostics) -> Mapping[ClaimKey, Assignment] | None:
+def allocate(
+    claims: Sequence[Claim], target: Target, diagnostics: Diagnostics, others: OtherCode = NO_OTHER_CODE
+) -> Mapping[ClaimKey, Assignment] | None:
     """An assignment for each claim, or None after reporting mistakes and conflicts.
 
-    The same claims get the same hardware in every run.
+    The same claims get the same hardware in every run.  They get no pin or instance that is in ``others``.
     """
     errors = diagnostics.error_count
     named = [claim for claim in claims if claim.node]
-    pins = Pins(target, claims, diagnostics)
+    pins = Pins(target, claims, diagnostics, others)
     checked = _check([claim for claim in claims if not claim.node], pins, target, diagnostics)
     result = _nodes(named, target, diagnostics)
     for name, peripheral in target.soc.peripherals.items():
         wanted = [placed for placed in checked if placed.resource_class.peripheral == name]
         candidates = [_candidate(placed, peripheral) for placed in wanted]
-        places = find_places([candidate.demand for candidate in candidates], _costs(peripheral))
-        if places is None:
+        found = find_places([candidate.demand for candidate in candidates], _costs(peripheral))
+        if found is None:
             report_conflicts(candidates, peripheral, pins, diagnostics)
             continue
-        for placed, place in zip(wanted, places):
-            result[placed.claim.key] = _assignment(placed, peripheral, place, target)
+        places = _better(candidates, found, peripheral, target)
+        for placed in wanted:
+            assignment = _assignment(placed, peripheral, places[placed.claim.key], target)
+            start = _start(placed, places, peripheral, target)
+            result[placed.claim.key] = replace(assignment, start=start) if start else assignment
     for placed in checked:
         if placed.resource_class.peripheral is None:
             result[placed.claim.key] = _pins_only(placed, target)
@@ -154,6 +168,7 @@ def _check(claims: Sequence[Claim], pins: Pins, target: Target, diagnostics: Dia
         places: frozenset[Place] = frozenset()
         if found is not None and peripheral is not None:
             places = pins.places(claim, resource_class, peripheral, found)
+            places = places_left(claim, places, peripheral, pins.others, diagnostics)
         errors = diagnostics.error_count
         _check_support(claim, resource_class, target, diagnostics)
         divisions = dividers.divisions(claim, resource_class, peripheral, places)
@@ -205,6 +220,32 @@ def _check_support(claim: Claim, resource_class: ResourceClass, target: Target, 
 def _candidate(placed: _Placed, peripheral: Peripheral) -> Candidate:
     agreed = tuple(_agreed(placed, attribute) for attribute in peripheral.agree)
     return Candidate(placed.claim, placed.resource_class, Demand(placed.places, agreed))
+
+
+def _better(
+    candidates: Sequence[Candidate], found: tuple[Place, ...], peripheral: Peripheral, target: Target
+) -> dict[ClaimKey, Place]:
+    """The places ``found`` for ``candidates``, or better ones."""
+    costs = _costs(peripheral)
+    demands = [candidate.demand for candidate in candidates]
+    found = widest_places(demands, [candidate.resource_class for candidate in candidates], found, peripheral, costs)
+    places = {candidate.claim.key: place for candidate, place in zip(candidates, found)}
+    if TICK in places and target.tick_starts:
+        tick = next(candidate for candidate in candidates if candidate.claim.key == TICK)
+        others = [candidate for candidate in candidates if candidate.claim.key != TICK]
+        taken = {places[other.claim.key][0] for other in others}
+        started = {places[other.claim.key][0] for other in others if other.resource_class.name == target.tick_starts}
+        places[TICK] = triggering_place(tick.demand, places[TICK], taken, started, peripheral, costs)
+    return places
+
+
+def _start(placed: _Placed, places: Mapping[ClaimKey, Place], peripheral: Peripheral, target: Target) -> str:
+    """The start of an instance that starts together with the timer of the control loop; empty for others."""
+    family = target.platform.family
+    if family is None or not target.tick_starts or placed.resource_class.name != target.tick_starts:
+        return ""
+    tick = places[TICK][0] if TICK in places else None
+    return start_of(places[placed.claim.key][0], tick, peripheral, family.start_otherwise)
 
 
 def _agreed(placed: _Placed, attribute: str) -> Hashable:

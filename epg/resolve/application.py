@@ -12,6 +12,7 @@ from epg.catalog.catalog import KindPort, Target
 from epg.check.bindings import ParameterSetting
 from epg.check.communication import Communication
 from epg.check.configuration import Component, Control
+from epg.check.other_code import NO_OTHER_CODE, OtherCode
 from epg.models.model import Model, Port
 from epg.resolve.allocation import Assignment
 from epg.resolve.parameters import RosParameters
@@ -49,12 +50,16 @@ class ResolvedComponent(Component):
 
 @dataclass(frozen=True)
 class Wire:
-    """A model port and the component port that it is bound to.  The value passes ``steps`` in their order."""
+    """A model port and the component port that it is bound to.  The value passes ``steps`` in their order.
+
+    ``unit`` is the unit of the value at the component, empty if it is not known.
+    """
 
     port: Port
     component: ResolvedComponent
     component_port: KindPort
     steps: tuple[Step, ...]
+    unit: str
     span: Span
 
 
@@ -152,3 +157,4 @@ class Application:
     step_divider: int
     files: tuple[Path, ...] = field(default=())
     absent: tuple[Path, ...] = field(default=())
+    others: OtherCode = NO_OTHER_CODE

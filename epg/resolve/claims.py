@@ -112,7 +112,10 @@ def _attributes(component: Component, claim: KindClaim) -> dict[str, Stated]:
     """The attributes that have a value.  The position of a default is that of the component's name."""
     result: dict[str, Stated] = {}
     for attribute, parameter in claim.attributes.items():
-        value, node = component.parameters.get(parameter), component.node.get(parameter)
+        name, _, part = parameter.partition(".")
+        value, node = component.parameters.get(name), component.node.get(name)
+        if part:
+            value = value.get(part) if isinstance(value, Mapping) else None
         if value is not None:
             origins = node.origins if node else component.node.origins
             result[attribute] = Stated(value, node.span if node else component.span, origins)

@@ -34,18 +34,19 @@ def report_conflicts(
     The caller has found that ``candidates`` have at least one such set.
     """
     left = list(candidates)
+    elsewhere = [use.note for name, use in pins.others.instances.items() if name in peripheral.instances]
     while not _possible(left):
         core = smallest_conflict(left)
         alike = [candidate for candidate in left if candidate.demand == core[0].demand]
         if all(candidate.demand == core[0].demand for candidate in core):
-            _too_many(alike, len(core) - 1, peripheral, pins.target, diagnostics)
+            _too_many(alike, len(core) - 1, peripheral, pins.target, elsewhere, diagnostics)
             left = [candidate for candidate in left if candidate not in alike]
             continue
         others = [candidate for candidate in left if candidate is not core[-1]]
         if len(core) == 2 and all(_bound_by_pin(candidate) for candidate in core):
             _two(core[0], core[1], peripheral, _pins_hint(core[1], others, peripheral, pins), diagnostics)
         else:
-            _several(core, peripheral, pins.target, diagnostics)
+            _several(core, peripheral, pins.target, elsewhere, diagnostics)
         left = others
 
 
@@ -125,19 +126,31 @@ def _two(first: Candidate, second: Candidate, peripheral: Peripheral, hint: str,
 
 
 def _too_many(
-    alike: Sequence[Candidate], possible: int, peripheral: Peripheral, target: Target, diagnostics: Diagnostics
+    alike: Sequence[Candidate],
+    possible: int,
+    peripheral: Peripheral,
+    target: Target,
+    elsewhere: Sequence[Note],
+    diagnostics: Diagnostics,
 ) -> None:
-    """Reports more equal claims than there are places."""
+    """Reports more equal claims than there are places.  ``elsewhere`` are the notes about instances of other code."""
     title = alike[0].resource_class.title
     users = ", ".join(candidate.claim.user for candidate in alike)
     message = f"{len(alike)} {title}s are needed, but {target.name} has {possible} ({_extent(peripheral)})"
     hint = f"remove {len(alike) - possible} of {users}"
     notes = [Note(f"{candidate.claim.user} is one of them", candidate.claim.span) for candidate in alike[:-1]]
+    notes += elsewhere
     diagnostics.error("too-many", alike[-1].claim.span, message, hint=hint, notes=notes)
 
 
-def _several(core: Sequence[Candidate], peripheral: Peripheral, target: Target, diagnostics: Diagnostics) -> None:
-    """Reports a minimal set of different claims that do not fit together."""
+def _several(
+    core: Sequence[Candidate],
+    peripheral: Peripheral,
+    target: Target,
+    elsewhere: Sequence[Note],
+    diagnostics: Diagnostics,
+) -> None:
+    """Reports a minimal set of different claims that do not fit together, as :func:`_too_many`."""
     last = core[-1]
     others = ", ".join(candidate.claim.user for candidate in core[:-1])
     needs = f"needs all of {peripheral.a_title}" if last.resource_class.whole else f"is {last.resource_class.a_title}"
@@ -151,6 +164,7 @@ def _several(core: Sequence[Candidate], peripheral: Peripheral, target: Target, 
         Note(f"{candidate.claim.user} uses one as {candidate.resource_class.title}", candidate.claim.span)
         for candidate in core[:-1]
     ]
+    notes += elsewhere
     diagnostics.error("too-many", last.claim.span, message, hint=hint, notes=notes)
 
 

@@ -9,6 +9,7 @@ from itertools import pairwise
 from types import MappingProxyType
 
 from epg.catalog.hardware import Peripheral, ResourceClass, Target
+from epg.check.other_code import NO_OTHER_CODE, OtherCode
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.items import pin_list
 from epg.resolve.claims import Claim, Stated
@@ -27,9 +28,12 @@ class PinUser:
 class Pins:
     """The pins of one target while its claims are checked.  The pins of claims that were checked before are taken."""
 
-    def __init__(self, target: Target, claims: Iterable[Claim], diagnostics: Diagnostics) -> None:
+    def __init__(
+        self, target: Target, claims: Iterable[Claim], diagnostics: Diagnostics, others: OtherCode = NO_OTHER_CODE
+    ) -> None:
         """``claims`` must be all claims of the target, so that hints name only pins that stay free."""
         self.target = target
+        self.others = others
         self.diagnostics = diagnostics
         self.usable_pins = {*target.board.pins, *target.board.onboard}
         self.taken: dict[str, PinUser] = {}
@@ -118,8 +122,8 @@ class Pins:
         """The free pins that a signal of a class can have, in the order of the chip."""
         board = self.target.board
         free = set(board.pins) | {pin for pin, at in board.onboard.items() if resource_class.name in at.classes}
-        free -= set(self.taken) | self.wanted
-        return [pin for pin in self.target.soc.pins if pin in free and self._can_reach(resource_class, signal, pin)]
+        free -= set(self.taken) | self.wanted | set(self.others.pins)
+        return [pin for pin in self.target.soc.pins if pin in free and self._is_useful(resource_class, signal, pin)]
 
     def _exists(self, pin: str, stated: Stated) -> bool:
         """True if components can use the pin.  Reports a pin that the board does not have, or reserves for itself."""
@@ -137,13 +141,21 @@ class Pins:
     def _is_free(self, pin: str, stated: Stated, claim: Claim, signal: str, resource_class: ResourceClass) -> bool:
         """True after taking the pin for ``claim``.
 
-        Reports a pin that another claim has taken, or that is wired to a device on the board of another class.
+        Reports a pin that another claim has taken, that other code uses, or that is wired to a device on the board of
+        another class.
         """
         onboard = self.target.board.onboard.get(pin)
         if onboard and resource_class.name not in onboard.classes:
             message = f"pin {pin} is wired to {onboard.title} and cannot be used for {resource_class.a_title}"
             hint = self._free_hint(resource_class, signal)
             self.diagnostics.error("pin-cannot-reach", stated.span, message, hint=hint, notes=stated.notes)
+            return False
+        elsewhere = self.others.pins.get(pin)
+        if elsewhere is not None:
+            message = f"pin {pin} is used by other code of the program"
+            hint = self._free_hint(resource_class, signal)
+            notes = [elsewhere.note, *stated.notes]
+            self.diagnostics.error("other-code-pin", stated.span, message, hint=hint, notes=notes)
             return False
         other = self.taken.get(pin)
         if other is None:
@@ -178,6 +190,16 @@ class Pins:
     def _can_reach(self, resource_class: ResourceClass, signal: str, pin: str) -> bool:
         peripheral = self.target.soc.peripherals.get(resource_class.peripheral or "")
         return peripheral is None or bool(self.reachable(resource_class, peripheral, {signal: pin}))
+
+    def _is_useful(self, resource_class: ResourceClass, signal: str, pin: str) -> bool:
+        """True if a pin reaches an instance that no other code uses."""
+        peripheral = self.target.soc.peripherals.get(resource_class.peripheral or "")
+        if peripheral is None:
+            return True
+        reached = {
+            peripheral.instances[instance] for instance, _ in self.reachable(resource_class, peripheral, {signal: pin})
+        }
+        return not reached.issubset(self.others.instances)
 
     def _are_neighbours(self, one: str, other: str) -> bool:
         numbers = self.target.soc.numbers

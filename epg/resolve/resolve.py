@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -17,6 +17,8 @@ from epg.quantity import parse_quantity, show
 from epg.resolve.allocation import Assignment, allocate
 from epg.resolve.application import Application, Plant, ResolvedComponent, Wire
 from epg.resolve.claims import TICK, component_claims, tick_claims
+from epg.resolve.counters import check_counters, longest_gap
+from epg.resolve.other_code import clock_of, compare_clocks, divided_clocks, report_own_transports, report_streams
 from epg.resolve.parameter_sizes import parameters_fit
 from epg.resolve.parameters import parameter_settings, parameter_values, ros_parameters
 from epg.resolve.topics import publications_of, subscriptions_of, value_indices_of
@@ -58,7 +60,9 @@ def resolve(
     simulated = _plant(plant, configuration, components, period, diagnostics) if plant else None
     _bound_ports(configuration.components, outputs, diagnostics)
     fail_safe = configuration.control.fail_safe
-    used = {wire.component.name for wire in (*inputs, *outputs)} | {fail_safe, configuration.communication.transport}
+    communication = configuration.communication
+    used: set[str | None] = {wire.component.name for wire in (*inputs, *outputs)}
+    used |= {fail_safe, communication.transport, communication.console_transport}
     for component in configuration.components.values():
         usable = component.kind.ports or component.kind.transport
         if usable and component.name not in used and diagnostics.error_count == errors:
@@ -76,7 +80,7 @@ def resolve(
         node=configuration.node,
         namespace=configuration.namespace,
         control=configuration.control,
-        communication=configuration.communication,
+        communication=communication,
         components=tuple(components.values()),
         model=model,
         inputs=inputs,
@@ -93,6 +97,7 @@ def resolve(
         step_divider=divider,
         files=_files(configuration, model, bindings, plant),
         absent=configuration.absent,
+        others=configuration.others,
     )
 
 
@@ -173,7 +178,20 @@ def allocate_hardware(
         *component_claims(configuration),
         *tick_claims(configuration.target, period, configuration.control.period_span),
     ]
-    return allocate(claims, configuration.target, diagnostics)
+    target, others = configuration.target, configuration.others
+    report_streams(configuration, claims, diagnostics)
+    report_own_transports(configuration, diagnostics)
+    found = allocate(claims, target, diagnostics, others)
+    if found is not None:
+        undivided = [name for name in target.clocks if name not in divided_clocks(target)]
+        divided = [claim for claim in claims if found[claim.key].clock is not None]
+        used = [clock_of(claim, found[claim.key].instance, target) for claim in divided]
+        compare_clocks([*undivided, *used], target, others, diagnostics)
+        gaps = {claim.key: longest_gap(found[claim.key], claim, target) for claim in claims}
+        found = {key: replace(assignment, longest_gap=gaps[key]) for key, assignment in found.items()}
+        if period is not None:
+            check_counters(claims, found, target, period, configuration.control.period_span, diagnostics)
+    return found
 
 
 def _components(

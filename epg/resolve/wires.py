@@ -70,7 +70,8 @@ class Wiring:
                     stated = ", ".join(f"{key}: {value}" for key, value in wanted.items())
                     hint = f"set '{stated}' in '{component.name}', or {hint}"
                 self.diagnostics.error("wrong-port-type", binding.span, message, hint=hint)
-            wires.append(Wire(port, component, component_port, steps, binding.span))
+            unit = _unit_at(port, binding, component, component_port)
+            wires.append(Wire(port, component, component_port, steps, unit, binding.span))
         return tuple(wires)
 
     def outputs(self) -> tuple[Wire, ...]:
@@ -100,7 +101,8 @@ class Wiring:
                     notes, hint = [Note("bound here", first[1])], "remove one of the two"
                     self.diagnostics.error("bound-twice", binding.span, message, hint=hint, notes=notes)
                 steps = self._steps(port, binding, component, component_port)
-                wires.append(Wire(port, component, component_port, steps, binding.span))
+                unit = _unit_at(port, binding, component, component_port)
+                wires.append(Wire(port, component, component_port, steps, unit, binding.span))
         return tuple(wires)
 
     def _section(self, key: str) -> Span:
@@ -221,6 +223,17 @@ def component_steps(component: Component, port: KindPort) -> tuple[list[Step], s
         steps.append(Step(scale=conversion_factor(unit, given), reason=f"{unit} -> {given}"))
     steps += _stated_step(conversion, f"components.{component.name}")
     return steps, given or ("" if conversion.scale is not None else unit)
+
+
+def _unit_at(port: Port, binding: Binding, component: Component, component_port: KindPort) -> str:
+    """The unit of a value at the component: the component's own one, else that of the model's port.
+
+    Empty if neither is known, or if a scale without units is between them.
+    """
+    own = normal_unit(component_port.unit) or component_steps(component, component_port)[1]
+    if own or component.conversion.scale is not None or binding.conversion.scale is not None:
+        return own
+    return normal_unit(binding.conversion.unit if binding.conversion.unit is not None else port.unit)
 
 
 def _is_stated(values: Mapping[str, str], component: Component) -> bool:

@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from epg.diagnostics import Diagnostics, did_you_mean
-from epg.ros.robot import HOST_SERIAL, Robot
+from epg.ros.robot import HOST_SERIAL, PICO_DIGITS, Robot
 from epg.source import Span
 
 AGENT_MIDDLEWARES = ("xrce", "micro_ros")
@@ -125,11 +125,11 @@ def _on_usb(robot: Robot, serials: Sequence[str], diagnostics: Diagnostics) -> l
     for serial in serials:
         number = serial.upper() if robot.usb_serial is None else serial
         span = Span.of_argument(f"{robot.name}={serial}", "--board")
-        if robot.usb_serial is None and not re.fullmatch("[0-9A-F]{16}", number):
-            message = f"'{serial}' is not the serial number of a Pico"
-            diagnostics.error(
-                "wrong-serial-number", span, message, hint="the serial number of a Pico has 16 hexadecimal digits"
-            )
+        if robot.usb_serial is None and not re.fullmatch(f"[0-9A-F]{{{robot.serial_digits}}}", number):
+            board = "a Pico" if robot.serial_digits == PICO_DIGITS else f"a board {robot.board}"
+            message = f"'{serial}' is not the serial number of {board}"
+            hint = f"the serial number of {board} has {robot.serial_digits} hexadecimal digits"
+            diagnostics.error("wrong-serial-number", span, message, hint=hint)
             continue
         if robot.usb_serial not in (None, serial):
             message = f"'{serial}' is not the serial number of '{robot.name}'"

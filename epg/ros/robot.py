@@ -28,8 +28,11 @@ HOST_SERIAL = "host"
 RASPBERRY_PI = 0x2E8A
 """The USB vendor number of a Pico whose ``.tcf`` does not set ``communication.usb``."""
 
+PICO_DIGITS = 16
+"""The hexadecimal digits of the serial number of a Pico."""
+
 USB_NAMES = {"manufacturer": "Raspberry Pi", "product": "Pico"}
-"""The texts of the USB device of a Pico without ``communication.usb``, from targets/families/rp2/usb/descriptors.c."""
+"""The texts of a Pico on USB without ``communication.usb``: targets/families/rp2/usb/include/tusb_config.h."""
 
 
 @dataclass(frozen=True)
@@ -74,6 +77,8 @@ class Robot:
     """The vendor number of its USB device: four hexadecimal digits in lower case, as in sysfs."""
     usb_serial: str | None
     """The serial number that its ``.tcf`` gives to its USB device.  None if the device has the number of the board."""
+    serial_digits: int
+    """The hexadecimal digits of the number of the board."""
     subscriptions: tuple[RobotTopic, ...]
     publications: tuple[RobotTopic, ...]
     messages: Mapping[str, str]
@@ -143,12 +148,12 @@ def _read(file: Path) -> Robot | None:
     """The target that ``file`` describes.  None if it is not a description."""
     try:
         data = json.loads(file.read_text(encoding="utf-8"))
-        return _robot(file, data)
+        return robot_of(file, data)
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
 
 
-def _robot(file: Path, data: dict[str, Any]) -> Robot:
+def robot_of(file: Path, data: dict[str, Any]) -> Robot:
     """The target in a description.  Raises ValueError, KeyError or TypeError if it is not one."""
     communication = data["communication"]
     domain = communication.get("domain")
@@ -171,6 +176,7 @@ def _robot(file: Path, data: dict[str, Any]) -> Robot:
         usb_name="_".join(udev_name(usb.get(key, text)) for key, text in USB_NAMES.items()),
         usb_vendor=f"{usb.get('vendor_id', RASPBERRY_PI):04x}",
         usb_serial=udev_name(usb["serial"]) if "serial" in usb else None,
+        serial_digits=int(usb.get("serial_digits", PICO_DIGITS)),
         subscriptions=tuple(_topic(topic) for topic in data["subscriptions"]),
         publications=tuple(_topic(topic) for topic in data["publications"]),
         messages={str(name): str(text) for name, text in data.get("messages", {}).items()},

@@ -29,11 +29,12 @@ class Tool:
     """A program or a folder.
 
     ``programs`` are the possible names of a program, the best first.  ``holds`` is a file by which the folder is
-    recognized.  ``places`` are patterns of folders; ``cached`` is a pattern in EPG's cache.  ``tested`` is the version
-    that EPG was tested with, ``oldest`` the oldest version that EPG accepts.  ``get`` maps package managers, or
-    ``any``, to the command that installs the tool; ``{cache}`` in it is replaced by EPG's cache.  ``optional`` is the
-    reason why the tool may be missing.  ``project_version`` is "required" or "preferred" if ``epg_use_versions()``
-    takes a version of the tool; if it is "required", another version is an error.
+    recognized.  A project with one of the files ``in_project`` does not need the tool.  ``places`` are patterns of
+    folders; ``cached`` is a pattern in EPG's cache.  ``tested`` is the version that EPG was tested with, ``oldest`` the
+    oldest version that EPG accepts.  ``get`` maps package managers, or ``any``, to the command that installs the tool;
+    ``{cache}`` in it is replaced by EPG's cache.  ``optional`` is the reason why the tool may be missing.
+    ``project_version`` is "required" or "preferred" if ``epg_use_versions()`` takes a version of the tool; if it is
+    "required", another version is an error.
     """
 
     name: str
@@ -42,6 +43,7 @@ class Tool:
     optional: str = ""
     programs: tuple[str, ...] = ()
     holds: str = ""
+    in_project: tuple[str, ...] = ()
     variables: tuple[str, ...] = ()  # variables of CMake
     environment: tuple[str, ...] = ()
     places: tuple[str, ...] = ()
@@ -99,6 +101,7 @@ def _tool(data: Mapping[str, Any]) -> Tool:
         optional=_text(data.get("optional", "")),
         programs=_texts(data.get("programs", [])),
         holds=_text(data.get("holds", "")),
+        in_project=_texts(data.get("in_project", [])),
         variables=_texts(data.get("variables", [])),
         environment=_texts(data.get("environment", data.get("variables", []))),
         places=_texts(data.get("places", [])),

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js, skip_if_missing, tool, unicorn
+from tests.platforms.stm32.images import PARTS
 
 ROOT = Path(__file__).resolve().parents[2]
 BENCHMARKS = ROOT / "benchmarks"
@@ -21,11 +22,13 @@ PAGE = ROOT / "docs" / "benchmarks.md"
 SMALLEST = {
     "generator": ["--rounds", "1"],
     "configure": ["--rounds", "1"],
-    "scaling": ["--rounds", "1", "--components", "40", "--targets", "2"],
+    "scaling": ["--rounds", "1", "--components", "40", "--targets", "2", "--system", "4"],
+    "system": ["--rounds", "1", "--targets", "2", "--seconds", "1", "--steps", "100"],
     "runtime": ["--cycles", "200", "--trace", "6000"],
     "exchange": ["--thousands", "1"],
     "pico_timing": ["--seeds", "1", "--milliseconds", "100", "--programs", "1", "--loads", "1"],
     "pico_cycle": ["--cycles", "20"],
+    "stm32_cycle": ["--cycles", "50"],
     "pico_closed_loop": ["--short", "1"],
     "pico_communication": ["--targets", "1"],
     "setpoint_latency": ["--steps", "20", "--platforms", "1"],
@@ -34,6 +37,7 @@ SMALLEST = {
     "xrce_round_trip": ["--count", "5"],
     "ping_pong": ["--pings", "5", "--flat", "20"],
 }
+STM32 = ("cmsis_device_h7", *PARTS)
 PROGRAMS = sorted(
     path.stem
     for path in BENCHMARKS.glob("*.py")
@@ -54,10 +58,12 @@ def test_it_runs_and_prints_what_the_page_shows(program: str) -> None:
     """The programs write the page: it has the same tables in the same order."""
     if program == "runtime" and shutil.which("valgrind") is None:
         pytest.skip("valgrind is not installed: apt install valgrind")
-    if program in ("configure", "scaling") and shutil.which("cmake") is None:
+    if program in ("configure", "scaling", "system") and shutil.which("cmake") is None:
         pytest.skip("cmake is not installed: apt install cmake")
     if program.startswith("pico") or program == "setpoint_latency":
         skip_if_missing(pico_sdk, arm_gcc, node, rp2040js, unicorn, lambda: tool("freertos_kernel"))
+    if program == "stm32_cycle":
+        skip_if_missing(arm_gcc, unicorn, *(lambda name=name: tool(name) for name in STM32))
     if program in ("network_situations", "ping_pong"):
         pytest.importorskip("cyclonedds", reason="CycloneDDS for Python is not installed: pip install cyclonedds")
         skip_if_missing(lambda: tool("cyclonedds"))
@@ -75,6 +81,13 @@ def test_it_runs_and_prints_what_the_page_shows(program: str) -> None:
 def test_generated_code_costs_little_more_than_code_written_by_hand() -> None:
     """Counts instructions instead of time: the result does not depend on the load of the machine."""
     found = re.search(r"everything else +[\d.]+ +[\d.]+ +([\d.]+) x", run("runtime"))
+    assert found is not None
+    assert float(found[1]) <= 1.2
+
+
+def test_a_cycle_on_an_stm32_costs_little_more_than_one_written_by_hand() -> None:
+    skip_if_missing(arm_gcc, unicorn, *(lambda name=name: tool(name) for name in STM32))
+    found = re.search(r"^all +[\d.]+ +[\d.]+ +[\d.]+ +([\d.]+) x$", run("stm32_cycle"), re.MULTILINE)
     assert found is not None
     assert float(found[1]) <= 1.2
 

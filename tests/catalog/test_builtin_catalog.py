@@ -27,6 +27,7 @@ from tests.catalog.everything import read_everything
 TARGETS = data_folder("targets")
 BOARDS = ("rpi_pico", "rpi_pico2")
 WIRELESS = ("rpi_pico_w", "rpi_pico2_w")
+NUCLEOS = ("nucleo_h743zi", "nucleo_h743zi2", "nucleo_f767zi")
 PLATFORMS = ("bare_metal", "freertos", "zephyr")
 
 
@@ -47,9 +48,9 @@ def test_everything_is_right() -> None:
 
 def test_the_targets_of_the_thesis_and_those_without_a_board() -> None:
     catalog, _ = builtin()
-    others = ["firmware", "host", "native_sim", "nucleo_h743zi_zephyr", "mps2_an385_zephyr"]
+    others = ["firmware", "host", "native_sim", "mps2_an385_zephyr"]
     assert catalog.target_names() == sorted(
-        [*others, *(f"{board}_{name}" for board in (*BOARDS, *WIRELESS) for name in PLATFORMS)]
+        [*others, *(f"{board}_{name}" for board in (*BOARDS, *WIRELESS, *NUCLEOS) for name in PLATFORMS)]
     )
     assert all(catalog.find_target(name).platform.builds for name in catalog.target_names())
 
@@ -131,6 +132,51 @@ def test_numbers_of_the_data_sheets(name: str, slices: int, blocks: int, clock: 
     assert target.board.onboard["25"].classes == ("digital_output", "pwm")
 
 
+def test_the_nucleos_differ_where_their_manuals_differ() -> None:
+    """UM1974 (MB1137) and UM2407 (MB1364): LD2, the switch of the USB supply, and the Arduino connector."""
+    boards = [builtin()[0].find_target(f"nucleo_h743zi{number}_zephyr").board for number in ("", "2")]
+    assert [board.names["LD2"] for board in boards] == ["PB7", "PE1"]
+    assert [{"PG6", "PD10"} & set(board.reserved) for board in boards] == [{"PG6"}, {"PD10"}]
+    assert [{"PG6", "PD10", "PB7", "PE1"} & set(board.pins) for board in boards] == [{"PD10", "PE1"}, {"PG6", "PB7"}]
+    assert [[board.names[name] for name in ("D0", "D2", "D7", "A3")] for board in boards] == [
+        ["PG9", "PF15", "PF13", "PF3"],
+        ["PB7", "PG14", "PG12", "PB1"],
+    ]
+    for board in boards:
+        parts = [*board.pins, *board.onboard, *board.reserved]
+        assert len(parts) == 114 == len(set(parts)), "each pin of the package with 144 pins has one meaning"
+        assert {name for name in board.names if name[0] in "AD"} == {
+            *(f"A{n}" for n in range(6)),
+            *(f"D{n}" for n in (*range(17), 21, 28, 29)),
+        }
+
+
+def test_zephyr_has_the_clocks_of_its_devicetree() -> None:
+    """Zephyr's nucleo_h743zi.dts: the core has 480 MHz.  Elsewhere, all revisions of the chip reach the clocks."""
+    target = builtin()[0].find_target("nucleo_h743zi_zephyr")
+    clocks = ("core", "apb1_timers", "apb2_timers", "uart1_6", "uart2_8")
+    assert [target.clocks[name].frequency / 1_000_000 for name in clocks] == [480, 240, 240, 120, 120]
+    assert [target.soc.clocks[name].frequency / 1_000_000 for name in clocks] == [400, 200, 200, 100, 100]
+    assert target.soc.clocks["hse"].frequency is None and target.clocks["hse"].frequency == 8_000_000
+
+
+def test_the_f767_has_the_board_of_the_h743() -> None:
+    """UM1974 describes MB1137 for both chips.  Zephyr's nucleo_f767zi.dts has the chip's own clocks."""
+    catalog, _ = builtin()
+    target, other = (catalog.find_target(f"nucleo_{name}_bare_metal") for name in ("f767zi", "h743zi"))
+    assert (target.board.pins, target.board.names) == (other.board.pins, other.board.names)
+    assert (target.board.reserved, target.board.onboard) == (other.board.reserved, other.board.onboard)
+    assert target.soc.pins == other.soc.pins
+    clocks = ("core", "apb1_timers", "apb2_timers", "usart1", "usart3", "hse")
+    for found in (target, catalog.find_target("nucleo_f767zi_zephyr")):
+        assert [found.clocks[name].frequency / 1_000_000 for name in clocks] == [216, 108, 216, 108, 54, 8]
+
+
+ROBOTS = ("jiwy.tcf", "relbot.tcf")
+WIRINGS = ("rpi_pico", "nucleo_h743zi", "nucleo_h743zi_stlink")
+WITHOUT_TARGET = (*ROBOTS, *(f"{wiring}_{robot}" for wiring in WIRINGS for robot in ROBOTS))
+
+
 @pytest.mark.parametrize("name", predefined_tcf_names(targets_roots()))
 def test_predefined_configurations(name: str) -> None:
     """Configurations with a target are valid; robots and wirings are valid once the missing keys are set."""
@@ -141,9 +187,7 @@ def test_predefined_configurations(name: str) -> None:
     settings = settings_node([(text, Span("settings")) for text in texts], problems)
     assert check_configuration(chain, settings, catalog, problems) is not None
     assert [(p.span, p.message) for p in problems] == []
-    assert missing == (
-        name in ("jiwy.tcf", "rpi_pico_jiwy.tcf", "nucleo_h743zi_jiwy.tcf", "relbot.tcf", "rpi_pico_relbot.tcf")
-    )
+    assert missing == (name in WITHOUT_TARGET)
 
 
 @pytest.mark.parametrize("robot", ["host_jiwy", "rpi_pico_bare_metal_jiwy", "rpi_pico2_freertos_jiwy"])
@@ -193,6 +237,7 @@ def test_parameters_are_typed_and_have_their_defaults() -> None:
         "preset": 0,
         "pull_up": False,
         "counter_bits": 32,
+        "max_speed": None,
     }
     values, _ = typed("pwm_h_bridge", "{kind: pwm_h_bridge, pins: {value: 1, direction_a: 2, direction_b: GP3}}")
     assert values == {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The pins of the STM32H743 in ``targets/socs`` are those of ST's own table, row by row.
+"""The pins of the STM32 chips in ``targets/socs`` are those of ST's own table, row by row.
 
 ST publishes the table as https://github.com/STMicroelectronics/STM32_open_pin_data (BSD-3-Clause).  The test needs a
 checkout of the commit below in EPG's cache, or in the folder that ``EPG_STM32_OPEN_PIN_DATA`` names::
@@ -25,7 +25,7 @@ from epg.diagnostics import Diagnostics
 COMMIT = "3d64b1076ac7f0bf0f74acf89b9578b530f37ed7"
 XML = {"": "http://dummy.com"}  # the namespace that ST's files have
 PIN = re.compile(r"P[A-K]\d+")
-SIGNAL = re.compile(r"(TIM\d+)_(CH\d)|(US?ART\d+)_([TR]X)")
+SIGNAL = re.compile(r"(TIM\d+)_(CH\d)|(US?ART\d+)_([TR]X)|(USB_OTG_FS)_(D[MP])")
 """Signals that EPG's table has: neither complementary outputs (``TIM1_CH1N``) nor LPUART1."""
 
 Row = tuple[str, str, str, int]
@@ -63,12 +63,17 @@ def rows_of_st(mcu: str) -> tuple[set[Row], set[str]]:
             if found is not None:
                 function = re.fullmatch(r"GPIO_AF(\d+)_\w+", numbers[written, found[0]])
                 assert function is not None
-                rows.add((found[1] or found[3], found[2] or found[4], name[0], int(function[1])))
+                instance, slot = (part for part in found.groups() if part is not None)
+                rows.add((instance, slot, name[0], int(function[1])))
     return rows, pins
 
 
-def test_pins_and_alternate_functions_are_those_of_st() -> None:
-    target = load_catalog(targets_roots(), Diagnostics()).find_target("nucleo_h743zi_zephyr")
+@pytest.mark.parametrize(
+    ("name", "mcu"),
+    [("nucleo_h743zi_bare_metal", "STM32H743ZITx"), ("nucleo_f767zi_bare_metal", "STM32F767ZITx")],
+)
+def test_pins_and_alternate_functions_are_those_of_st(name: str, mcu: str) -> None:
+    target = load_catalog(targets_roots(), Diagnostics()).find_target(name)
     assert target is not None
     ours = {
         (peripheral.instances[instance], peripheral.slots[slot], pin, peripheral.functions[instance, slot][pin])
@@ -76,7 +81,7 @@ def test_pins_and_alternate_functions_are_those_of_st() -> None:
         for (instance, slot), pins in peripheral.pins.items()
         for pin in pins
     }
-    rows, pins = rows_of_st("STM32H743ZITx")
+    rows, pins = rows_of_st(mcu)
     assert len(rows) > 90
     assert sorted(ours - rows) == [] and sorted(rows - ours) == []
     assert set(target.soc.pins) == pins

@@ -205,6 +205,18 @@ def test_check_lists_the_hardware(capsys: pytest.CaptureFixture[str]) -> None:
     assert loop["divider"] == {"asked": 1000.0, "reached": 1000.0, "error": 0.0, "steps": 50000}
 
 
+def test_the_start_of_outputs_is_shown(capsys: pytest.CaptureFixture[str]) -> None:
+    files = ["nucleo_h743zi_bare_metal_jiwy.tcf", *FILES[2:]]
+    assert main(["check", "--hardware", files[0]]) == 0
+    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert "pwm_pan.pwm timer TIM1, channel CH1 value PE9 20 kHz 10000 steps; started by TIM15".split() in lines
+    assert main(["explain", "pwm_pan", "--name", "jiwy", "--tcf", *files]) == 0
+    (row,) = {line for line in capsys.readouterr().out.splitlines() if line.split()[0] == "start"}
+    assert row.split() == "start started by TIM15 pwm: with the timer of the control loop".split()
+    assert main(["explain", "pwm_pan", "--name", "jiwy", "--json", "--tcf", *files]) == 0
+    assert json.loads(capsys.readouterr().out)[0]["resources"]["starts"] == {"pwm": "started by TIM15"}
+
+
 def test_explain_a_component_as_json(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["explain", "encoder_pan", "--json", *FILES]) == 0
     wires = json.loads(capsys.readouterr().out)

@@ -142,6 +142,32 @@ def test_one_project(bare: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert "no target with readable files was found" in capsys.readouterr().out
 
 
+def test_a_project_with_headers_of_its_own(bare: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (bare / "CMakeLists.txt").write_text(
+        f"project(x C)\nepg_add_target(jiwy TCF nucleo_h743zi_freertos_jiwy.tcf MODEL {ROOT}/examples/jiwy/model\n"
+        f"  BINDINGS {ROOT}/examples/jiwy/jiwy.bindings.yaml)\n"
+    )
+    for file, left in (
+        ("Drivers/CMSIS/Include/core_cm7.h", {"cmsis_device_h7"}),
+        ("Drivers/CMSIS/Device/ST/STM32H7xx/Include/stm32h7xx.h", set()),
+    ):
+        (bare / file).parent.mkdir(parents=True)
+        (bare / file).touch()
+        main(["doctor", "--json", "--project", str(bare)])
+        items = {item["name"] for item in json.loads(capsys.readouterr().out)["items"]}
+        assert {name for name in items if name.startswith("cmsis")} == left and "freertos_kernel" in items
+        assert "tinyusb" not in items
+
+
+def test_a_project_with_usb(bare: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (bare / "CMakeLists.txt").write_text(
+        f"project(x C)\nepg_add_target(jiwy TCF nucleo_h743zi_freertos_jiwy.tcf MODEL {ROOT}/examples/jiwy/model\n"
+        f"  BINDINGS {ROOT}/examples/jiwy/jiwy.bindings.yaml SET communication.transport=usb)\n"
+    )
+    main(["doctor", "--json", "--project", str(bare)])
+    assert "tinyusb" in {item["name"] for item in json.loads(capsys.readouterr().out)["items"]}
+
+
 def test_a_variable_that_leads_nowhere(
     bare: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -37,6 +37,10 @@ TARGETS = [
     "rpi_pico2_freertos_jiwy",
     "host_jiwy",
     "firmware",
+    "nucleo_h743zi_bare_metal",
+    "nucleo_h743zi2_freertos",
+    "nucleo_h743zi_bare_metal_jiwy",
+    "nucleo_h743zi_freertos_jiwy",
 ]
 EXTENSION_HEADER = "# == DO NOT EDIT THE FOLLOWING LINES for the Raspberry Pi Pico VS Code Extension to work =="
 
@@ -63,6 +67,8 @@ def test_a_project_is_complete_and_right(target: str, tmp_path: Path, capsys: py
     assert {"README.md", "CMakeLists.txt", "CMakePresets.json", "epg_import.cmake", ".gitignore"} <= names
     if target.startswith("rpi"):
         assert {"pico_sdk_import.cmake", ".vscode/launch.json"} <= names
+    if target.startswith("nucleo"):
+        assert {".vscode/launch.json", ".vscode/tasks.json"} <= names
     if not target.startswith("host"):
         assert "simulation/CMakeLists.txt" in names
         assert main(["check", str(folder / "simulation/robot_host.tcf")]) == 0
@@ -429,15 +435,25 @@ def test_choosing_another_sdk_in_the_extension_keeps_the_rest(tmp_path: Path) ->
         assert line in kept
 
 
-@pytest.mark.parametrize("target", ["rpi_pico_freertos", "rpi_pico2_freertos_jiwy", "rpi_pico_bare_metal", "host"])
+@pytest.mark.parametrize(
+    "target",
+    ["rpi_pico_freertos", "rpi_pico2_freertos_jiwy", "rpi_pico_bare_metal", "nucleo_h743zi_freertos_jiwy", "host"],
+)
 def test_versions_stand_in_one_file(target: str, tmp_path: Path) -> None:
     text = cmakelists(tmp_path, target)
     stated = dict(re.findall(r"^set\((\w+)Version (.+)\)$", text, re.M))
     assert stated["epg"] == epg.__version__
-    assert ("sdk" in stated) == (target != "host")
+    assert ("sdk" in stated) == target.startswith("rpi")
+    assert ("cmsisDevice" in stated) == ("cmsisCore" in stated) == target.startswith("nucleo")
     assert ("freertos" in stated) == ("freertos" in target)
     tools = load_tools(targets_roots(), Diagnostics())
-    for name, tool in (("sdk", "pico_sdk"), ("freertos", "freertos_kernel")):
+    parts = {
+        "sdk": "pico_sdk",
+        "freertos": "freertos_kernel",
+        "cmsisCore": "cmsis_core",
+        "cmsisDevice": "cmsis_device_h7",
+    }
+    for name, tool in parts.items():
         assert name not in stated or stated[name] == tools[tool].tested
     for name, data in snapshot(tmp_path / "robot").items():
         if name != "CMakeLists.txt" and not name.startswith("model/"):
@@ -446,7 +462,7 @@ def test_versions_stand_in_one_file(target: str, tmp_path: Path) -> None:
 
 
 def test_settings_for_editors_are_json(tmp_path: Path) -> None:
-    for target in ("rpi_pico2_bare_metal", "host"):
+    for target in ("rpi_pico2_bare_metal", "nucleo_h743zi2_bare_metal", "host"):
         folder = tmp_path / target
         assert new(folder, target) == 0
         files = [*folder.glob(".vscode/*.json"), folder / "CMakePresets.json"]
@@ -465,7 +481,7 @@ def test_editors_find_the_schema_of_each_file(tmp_path: Path) -> None:
 
     from jsonschema import Draft202012Validator
 
-    for target in ("rpi_pico2_bare_metal", "host_jiwy"):
+    for target in ("rpi_pico2_bare_metal", "nucleo_h743zi_freertos", "host_jiwy"):
         folder = tmp_path / target
         assert new(folder, target) == 0
         settings = json.loads((folder / ".vscode/settings.json").read_text())
@@ -488,7 +504,7 @@ def test_editors_find_the_schema_of_each_file(tmp_path: Path) -> None:
 # texts for the user ---------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("target", ["rpi_pico_bare_metal", "rpi_pico2_freertos", "host"])
+@pytest.mark.parametrize("target", ["rpi_pico_bare_metal", "rpi_pico2_freertos", "nucleo_h743zi_freertos", "host"])
 def test_the_examples_in_a_fresh_configuration_are_right(target: str, tmp_path: Path) -> None:
     """The components in its comments are valid when they are uncommented."""
     assert new(tmp_path / "robot", target, TURNTABLE) == 0

@@ -60,6 +60,7 @@ NEEDS_CMAKE = {
 }
 """Examples whose calls are not literal, with their positions."""
 EXPECTED = {
+    "existing_cubemx_repository": (["turntable"], "cmake", "build/Debug"),
     "existing_firmware": (["turntable"], "cmake", "build/host"),
     "existing_firmware/station": (["turntable"], "cmake", "../build/host"),
     "existing_zephyr_application": (["turntable"], "west", "build"),
@@ -95,6 +96,18 @@ def test_examples_are_found_and_can_be_loaded(example: str, examples: Path) -> N
         diagnostics = Diagnostics()
         assert load_application(job.request, diagnostics) is not None, diagnostics.items
         assert job.request.caller is not None and job.request.caller.line > 0
+
+
+def test_the_project_file_of_cubemx_is_an_argument_as_any_other(examples: Path) -> None:
+    folder = examples / "existing_cubemx_repository"
+    ((job,), _) = found(folder)
+    assert job.request.ioc == folder / "station.ioc"
+    with (folder / "station.ioc").open("a") as file:
+        file.write("PD12.Signal=GPIO_Output\n")
+    diagnostics = Diagnostics()
+    assert load_application(job.request, diagnostics) is None
+    assert [item.id for item in diagnostics] == ["other-code-pin"]
+    shutil.copy(EXAMPLES / "existing_cubemx_repository" / "station.ioc", folder)
 
 
 @pytest.mark.parametrize("example", NEEDS_CMAKE)
@@ -221,6 +234,7 @@ def test_all_that_a_call_can_say(tmp_path: Path) -> None:
         ("include(robots.cmake)\nepg_add_target(a TCF ${robot}.tcf MODEL m BINDINGS b)\n", "2:22"),
         ("epg_add_target(${ARGN})\n", "1:16"),
         ("epg_add_target(a TCF x.tcf MODEL m)\n", "1:1"),
+        ("epg_add_target(a SYSTEM s.system.yaml)\n", "1:1"),
         ("epg_add_target()\n", "1:1"),
         ("function(robot name)\n  epg_add_target(${name} TCF x MODEL m BINDINGS b)\nendfunction()\n", "2:3"),
         ("add_subdirectory(${ROBOT})\n", "1:18"),

@@ -17,6 +17,7 @@ from typing import Any
 import pytest
 
 from epg.catalog.catalog import Target, load_catalog
+from epg.catalog.hardware import Divider
 from epg.cli.main import main
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
@@ -27,6 +28,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 BOARDS = ("rpi_pico", "rpi_pico2")
 WIRELESS = ("rpi_pico_w", "rpi_pico2_w")
 """Boards whose pages only list the differences."""
+NUCLEOS = {"nucleo_h743zi": "Nucleo-H743ZI", "nucleo_h743zi2": "Nucleo-H743ZI2"}
 ROBOTS = ("jiwy", "relbot")
 PLATFORMS = ("bare_metal", "freertos")
 FREQUENCIES = (1_000, 5_000, 10_000, 20_000, 25_000, 50_000, 100_000)
@@ -40,6 +42,13 @@ def target(board: str) -> Target:
     found = load_catalog(targets_roots(), Diagnostics()).find_target(f"{board}_bare_metal")
     assert found is not None
     return found
+
+
+def timers(found: Target) -> Fraction:
+    """The clock of an STM32's timers on APB2, which TIM1 divides."""
+    frequency = found.clocks["apb2_timers"].frequency
+    assert frequency is not None
+    return frequency
 
 
 def clk_sys(found: Target) -> Fraction:
@@ -85,9 +94,44 @@ def wiring(board: str, robot: str, capsys: pytest.CaptureFixture[str]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def nucleo_wiring(robot: str, capsys: pytest.CaptureFixture[str]) -> str:
+    """The pins of both Nucleo boards, which have one connector with different pins of the chip."""
+    both = [hardware(f"{board}_{platform}_{robot}", capsys) for board in NUCLEOS for platform in PLATFORMS]
+    assert both[0] == both[1] and both[2] == both[3], "one table for both platforms"
+    printed = [{pin: name for name, pin in target(board).board.names.items()} for board in NUCLEOS]
+    lines = [
+        f"`<board>_bare_metal_{robot}.tcf`, `<board>_freertos_{robot}.tcf`:",
+        "",
+        f"| component | wire | name | {' | '.join(NUCLEOS.values())} | pull-down | hardware |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for one, other in zip(both[0], both[2]):
+        resource = one["resource"]
+        if not one["pins"]:
+            lines.append(f"| (control loop) | | | | | | {resource} |")
+        for signal, pin in one["pins"].items():
+            wire = signal if one["claim"] in ("encoder", "uart", "pwm") else one["claim"]
+            names = [names.get(at, "") for names, at in zip(printed, (pin, other["pins"][signal]))]
+            assert names[0] == names[1]
+            driven = one["claim"] == "pwm" or resource.startswith("pin ")
+            cells = [f"`{one['component']}`", wire, names[0], pin, other["pins"][signal], "10 kΩ" if driven else ""]
+            lines.append(f"| {' | '.join([*cells, 'GPIO' if resource.startswith('pin ') else resource])} |")
+    return "\n".join(line.replace("|  |", "| |") for line in lines) + "\n"
+
+
+def nucleo_pwm(board: str) -> str:
+    found = target(board)
+    return steps(timers(found), found.soc.classes["pwm"].counter, found.soc.peripherals["timer"].divider)
+
+
 def pwm(board: str) -> str:
-    clock, divider = clk_sys(target(board)), target(board).soc.peripherals["pwm"].divider
+    return steps(clk_sys(target(board)), None, target(board).soc.peripherals["pwm"].divider)
+
+
+def steps(clock: Fraction, counter: tuple[int, int] | None, divider: Divider | None) -> str:
+    """The number of steps of a duty cycle for each frequency."""
     assert divider is not None
+    divider = Divider(divider.prescaler, counter or divider.counter)
     lines = ["| frequency | steps | reached |", "|---|---|---|"]
     for frequency in FREQUENCIES:
         found = divide(clock / frequency, divider, exact=False)
@@ -103,6 +147,19 @@ def test_tables_are_true(board: str, capsys: pytest.CaptureFixture[str]) -> None
         f"wiring {robot}": lambda r=robot: wiring(board, r, capsys) for robot in ROBOTS
     }  # type: ignore[misc]
     makers["pwm"] = lambda: pwm(board)
+    compare(board, makers)
+
+
+def test_tables_of_the_nucleos_are_true(capsys: pytest.CaptureFixture[str]) -> None:
+    makers: dict[str, Callable[[], str]] = {
+        f"wiring {robot}": lambda r=robot: nucleo_wiring(r, capsys) for robot in ROBOTS
+    }  # type: ignore[misc]
+    compare("nucleo_h743zi", makers | {"pwm": lambda: nucleo_pwm("nucleo_h743zi")})
+    compare("nucleo_f767zi", {"pwm": lambda: nucleo_pwm("nucleo_f767zi")})
+
+
+def compare(board: str, makers: dict[str, Callable[[], str]]) -> None:
+    """The blocks of a page are those that the makers give."""
     text = page(board).read_text(encoding="utf-8")
     blocks = re.findall(r"<!-- (\w[\w ]*) -->\n(.*?)<!-- end -->", text, re.DOTALL)
     assert [name for name, _ in blocks] == list(makers)
@@ -134,6 +191,55 @@ def test_numbers_in_the_text_are_true(board: str) -> None:
     assert len(reached) == 8 and "16 channels on 8 slices" in text
     extra = len(slices.instances) - len(reached)
     assert (f"{extra} more slices" in text) == (extra > 0)
+
+
+def test_numbers_of_the_nucleos_are_true() -> None:
+    text = page("nucleo_h743zi").read_text(encoding="utf-8")
+    found = target("nucleo_h743zi")
+    soc = found.soc
+    for name in ("core", "apb1_timers"):
+        assert f"{soc.clocks[name].frequency // 1_000_000} MHz" in text  # type: ignore[operator]
+        assert f"{soc.clocks[name].maximum // 1_000_000} MHz" in text  # type: ignore[operator]
+    assert f"{len(soc.classes['quadrature'].instances)}: TIM1 to TIM5 and TIM8" in text
+    divider = soc.peripherals["timer"].divider
+    assert divider is not None
+    longest = Fraction(clock_range(divider)[1]) / timers(found)
+    assert f"| control period | up to {show(longest, 'time', -1)};" in text
+    assert found.platform.family is not None and found.platform.family.own == ("TIM7",)
+    fast = re.search(r"clocks: (\{core: .*?\})", text)
+    assert fast is not None
+    assert dict(re.findall(r"(\w+): (\d+ MHz)", fast[1])) == {
+        name: str(node.value) for name, node in target_of_zephyr().board_clocks.items() if name != "hse"
+    }
+
+
+def test_numbers_of_the_f767_are_true(capsys: pytest.CaptureFixture[str]) -> None:
+    """Clocks and limits; the pins are those of the Nucleo-H743ZI."""
+    text = page("nucleo_f767zi").read_text(encoding="utf-8")
+    found = target("nucleo_f767zi")
+    clocks = dict(found.clocks)
+    for names, mhz in re.findall(r"^\| (`.*`) \| (\d+) MHz", text, re.MULTILINE):
+        for name in re.findall(r"`(\w+)`", names):
+            assert clocks.pop(name).frequency == int(mhz) * 1_000_000
+    assert set(clocks) == {"hse"}
+    divider = found.soc.peripherals["timer"].divider
+    assert divider is not None
+    longest = Fraction(clock_range(divider)[1]) / 108_000_000
+    assert f"| control period | up to {show(longest, 'time', -1)};" in text
+    pins = [
+        [(row["component"], row["pins"]) for row in hardware(f"{board}_bare_metal_{robot}", capsys)]
+        for board in ("nucleo_f767zi", "nucleo_h743zi")
+        for robot in ROBOTS
+    ]
+    assert pins[:2] == pins[2:]
+    (loop,) = [row["resource"] for row in hardware("nucleo_f767zi_freertos_jiwy", capsys) if not row["pins"]]
+    assert f"chooses\n{loop.removeprefix('timer ')} for the control loop" in text
+
+
+def target_of_zephyr() -> Target:
+    found = load_catalog(targets_roots(), Diagnostics()).find_target("nucleo_h743zi_zephyr")
+    assert found is not None
+    return found
 
 
 @pytest.mark.parametrize("board", WIRELESS)

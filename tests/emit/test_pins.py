@@ -50,7 +50,7 @@ def test_pins_of_outputs_are_made_safe(
 PLATFORM = """api: 1
 platform: registers
 summary: writes registers
-families: [stm32h7, rp2]
+families: [stm32, rp2]
 classes: [digital_input, digital_output, pwm, quadrature, uart, periodic_tick]
 middlewares: {none: []}
 tick: {class: periodic_tick}
@@ -82,10 +82,10 @@ components:
 NUCLEO = """encoder a: PD12 60 2
 encoder b: PD13 61 2
 motor value: PE9 73 1
-motor: TIM1 200000000
+motor: TIM1 240000000
 button value: PE2 66 0
 position value: PE3 67 0
-tick: TIM6 240000000
+tick: TIM6 200000000
 """
 PICO = """encoder a: 10 10 0
 encoder b: 11 11 0
@@ -100,7 +100,7 @@ tick: 7 133000000
 @pytest.mark.parametrize(
     ("board", "clocks", "pins", "expected"),
     [
-        ("nucleo_h743zi", "{apb2_timers: 200 MHz}", ("PD12", "PD13", "PE9", "PE2", "PE3"), NUCLEO),
+        ("nucleo_h743zi", "{apb2_timers: 240 MHz}", ("PD12", "PD13", "PE9", "PE2", "PE3"), NUCLEO),
         ("rpi_pico", "{sys: 133 MHz}", (10, 11, 2, 3, 4), PICO),
     ],
 )

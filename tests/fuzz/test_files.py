@@ -156,3 +156,44 @@ def test_mutated_exports(tmp_path: Path, kind: str) -> None:
 def test_arbitrary_bytes_in_exports(tmp_path: Path, kind: str, data: st.DataObject, junk: bytes) -> None:
     files = export(kind)
     Project(tmp_path / "p", files | {data.draw(st.sampled_from(sorted(files))): junk}, MODEL_ALONE).generate()
+
+
+@cache
+def cubemx_project() -> dict[str, bytes]:
+    """A program of STM32CubeMX with a controller."""
+    files = project_files(ROOT / "examples/existing_cubemx_repository")
+    return {name: data for name, data in files.items() if name.startswith("controller/") or name == "station.ioc"}
+
+
+CUBEMX = (
+    *("--tcf", "controller/turntable.tcf", "--model", "controller/model", "--ioc", "station.ioc"),
+    *("--bindings", "controller/turntable.bindings.yaml"),
+)
+"""Arguments of ``epg generate``."""
+
+
+def test_mutated_projects_of_cubemx(tmp_path: Path) -> None:
+    """Both outcomes are frequent: most keys do not concern EPG, and many that do are in the way."""
+    counts: Counter[bool] = Counter()
+
+    @settings(PROFILE, max_examples=examples(60))
+    @given(st.data())
+    def run(data: st.DataObject) -> None:
+        files = cubemx_project()
+        text = files["station.ioc"].decode()
+        if data.draw(st.booleans()):
+            key = data.draw(
+                st.sampled_from(("PD12.Signal", "Mcu.IP5", "Mcu.IP77", "PB0.Signal", "VP_SYS_VS_tim6.Signal"))
+            )
+            value = data.draw(
+                st.sampled_from(("TIM4", "TIM7", "S_TIM4_CH1", "GPIO_Output", "SYS_VS_tim7", "USART2", ""))
+            )
+            text += f"{key}={value}\n"
+        else:
+            text = data.draw(mutated(text, TEXT_MUTATIONS, 2)).decode("latin-1")
+        outcome = Project(tmp_path / "p", files | {"station.ioc": text.encode("latin-1")}, CUBEMX).generate()
+        counts[outcome.good] += 1
+
+    assert Project(tmp_path / "p", cubemx_project(), CUBEMX).generate().good
+    run()
+    assert min(counts[True], counts[False]) >= sum(counts.values()) / 10, counts

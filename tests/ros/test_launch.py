@@ -19,6 +19,7 @@ from epg.cli.main import main
 from epg.data import targets_roots
 from epg.ros.robot import USB_NAMES
 from epg.ros.systemd_units import device_unit
+from tests.emulator.toolchain import ROOT
 
 from .description import write_description
 
@@ -83,12 +84,29 @@ def test_one_agent_for_each_board_and_one_for_all_by_udp(robots: Path, capsys: p
 def test_the_name_of_a_board_is_that_of_its_descriptors() -> None:
     """udev composes the name from manufacturer, product and serial number."""
     source = next(
-        file for root in targets_roots([]) if (file := root / "families/rp2/usb/descriptors.c").is_file()
+        file for root in targets_roots([]) if (file := root / "families/rp2/usb/include/tusb_config.h").is_file()
     ).read_text(encoding="utf-8")
     texts = dict(re.findall(r'#define EPG_PICO_USB_(\w+) "([^"]*)"', source))
     assert {key.upper(): text for key, text in USB_NAMES.items()} == texts
     product = f"usb-{texts['MANUFACTURER']}_{texts['PRODUCT']}".replace(" ", "_")
     assert BY_ID.format(FIRST) == f"/dev/serial/by-id/{product}_{FIRST}-if00"
+
+
+def test_a_nucleo_on_usb(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The names are those that the family gives to its USB device; the serial number has 96 bits."""
+    tcf = tmp_path / "jiwy.tcf"
+    tcf.write_text("version: 1\nextends: nucleo_h743zi_bare_metal_jiwy.tcf\ncommunication: {transport: usb}\n")
+    example = ROOT / "examples/jiwy"
+    files = ["--tcf", str(tcf), "--model", str(example / "model"), "--bindings", str(example / "jiwy.bindings.yaml")]
+    assert main(["generate", "jiwy", *files, "--output", str(tmp_path / "epg")]) == 0
+    launch = ["launch", str(tmp_path / "epg/jiwy.json"), "--output", str(tmp_path / "out"), "--systemd", "--board"]
+    assert main([*launch, f"jiwy={FIRST}"]) != 0
+    assert "the serial number of a board nucleo_h743zi has 24 hexadecimal digits" in capsys.readouterr().err
+    assert main([*launch, "jiwy=003A002C3533510B31373835"]) == 0
+    text = (tmp_path / "out" / "agents.launch.py").read_text(encoding="utf-8")
+    assert '"/dev/serial/by-id/usb-STMicroelectronics_STM32_003A002C3533510B31373835-if00"' in text
+    rules = next((tmp_path / "out").glob("**/*.rules")).read_text(encoding="utf-8")
+    assert 'ATTRS{idVendor}=="0483"' in rules
 
 
 def test_a_board_with_names_of_its_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

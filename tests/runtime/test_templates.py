@@ -37,10 +37,17 @@ HARNESS = SOURCES / "templates.c"
 PWM = {"prescaler": 1, "top": 6249}
 
 
-def claim(pins: Mapping[str, int], instance: int = 0, slot: int = 0, **settings: int) -> SimpleNamespace:
+def claim(
+    pins: Mapping[str, int], instance: int = 0, slot: int = 0, gap: Fraction | None = None, **settings: int
+) -> SimpleNamespace:
     clocks = settings.get("prescaler", 1) * (settings.get("top", 0) + 1)
     return SimpleNamespace(
-        pins=dict(pins), instance=instance, slot=slot, settings=settings, frequency=Fraction(125_000_000, clocks)
+        pins=dict(pins),
+        instance=instance,
+        slot=slot,
+        settings=settings,
+        frequency=Fraction(125_000_000, clocks),
+        longest_gap=gap,
     )
 
 
@@ -94,6 +101,11 @@ COMPONENTS_TRIED = [
         "encoder_preset",
         "{kind: quadrature_encoder, counts_per_revolution: 4096, preset: 90 deg}",
         {"encoder": claim({"a": 20, "b": 21}, 1, 3)},
+    ),
+    Component(
+        "encoder_speed",
+        "{kind: quadrature_encoder, counts_per_revolution: 4096, max_speed: 40 rad/s}",
+        {"encoder": claim({"a": 22, "b": 23}, 1, 1, gap=Fraction(5, 4))},
     ),
     Component(
         "bridge", "{kind: pwm_h_bridge, frequency: 20 kHz, max_duty: 0.96, dead_time: 0 s}", bridge_claims(2, 7, 8, 1)

@@ -18,9 +18,9 @@ from pathlib import Path
 from typing import Any
 
 from tests.emulator.toolchain import unicorn
-from tests.platforms.pico.rp2350.cortex_m33 import _symbols
-
-from .timers import Timer
+from tests.platforms.stm32.machine.agenda import Agenda
+from tests.platforms.stm32.machine.image import Image
+from tests.platforms.stm32.machine.timers import Level, Timer
 
 FLASH, FLASH_SIZE = 0x08000000, 0x200000
 MEMORIES = (
@@ -41,15 +41,30 @@ SYST_CSR = 0xE000E010
 ADC_ISRS, ADC_CRS = (0x40022000, 0x40022100, 0x58026000), (0x40022008, 0x40022108, 0x58026008)
 NVIC_ISER, NVIC_ICER, NVIC_IPR, VTOR, MPU_TYPE = 0xE000E100, 0xE000E180, 0xE000E400, 0xE000ED08, 0xE000ED90
 
-# Base address, width, interrupt of the channels; registers and bit of clock and reset (RM0433, 2.3, 19.1.2, 8.7).
-TIMERS = {
-    "TIM1": (0x40010000, 16, 27, APB2ENR, APB2RSTR, 0),
-    "TIM2": (0x40000000, 32, 28, APB1LENR, APB1LRSTR, 0),
-    "TIM3": (0x40000400, 16, 29, APB1LENR, APB1LRSTR, 1),
-    "TIM4": (0x40000800, 16, 30, APB1LENR, APB1LRSTR, 2),
-    "TIM5": (0x40000C00, 32, 50, APB1LENR, APB1LRSTR, 3),
-    "TIM8": (0x40010400, 16, 46, APB2ENR, APB2RSTR, 1),
-}
+TIMERS = ("TIM1", "TIM2", "TIM3", "TIM4", "TIM5", "TIM8")
+CLOCKS, RESETS = {1: APB1LENR, 2: APB2ENR}, {1: APB1LRSTR, 2: APB2RSTR}
+"""Registers of each APB."""
+
+
+class _Standstill:
+    """The surroundings of timers without time: they count edges only.  Their flags show requests for interrupts."""
+
+    now = 0
+
+    def __init__(self) -> None:
+        self.agenda = Agenda()
+
+    def timer_clock(self, apb: int) -> int:
+        return 0
+
+    def line(self, interrupt: int, source: object, high: bool) -> None:
+        pass
+
+    def triggered(self, name: str) -> list[Timer]:
+        return []
+
+    def levels_changed(self, level: Level) -> None:
+        pass
 
 
 class Stm32h743:
@@ -60,8 +75,9 @@ class Stm32h743:
         self.arm = module.arm_const
         self.cpu = module.Uc(module.UC_ARCH_ARM, module.UC_MODE_THUMB | module.UC_MODE_MCLASS)
         self.cpu.ctl_set_cpu_model(self.arm.UC_CPU_ARM_CORTEX_M7)
-        self.symbols = _symbols(elf)
-        self.timers = {name: Timer(bits, interrupt) for name, (_, bits, interrupt, *_) in TIMERS.items()}
+        image = Image(elf)
+        self.symbols = image.symbols
+        self.timers = {name: Timer(name, _Standstill()) for name in TIMERS}
         self.pins: dict[str, tuple[tuple[str, int], tuple[str, int], int]] = {}
         self.registers: dict[int, int] = {MPU_TYPE: 16 << 8, RCC + RCC_CR: 1}
         self.enabled: set[int] = set()
@@ -71,7 +87,7 @@ class Stm32h743:
         """If True, each read of SysTick finds another millisecond passed; else time does not advance."""
         for base, size in ((FLASH, FLASH_SIZE), *MEMORIES):
             self.cpu.mem_map(base, size)
-        for address, data in _load_segments(elf):
+        for address, data in image.segments:
             self.cpu.mem_write(address, data)
         self.cpu.mmio_map(
             PERIPHERALS, PERIPHERALS_SIZE, self._reader(PERIPHERALS), None, self._writer(PERIPHERALS), None
@@ -96,7 +112,7 @@ class Stm32h743:
     def serve(self, longest: int = 10_000) -> None:
         """Enters interrupts that are due, as soon as they are not masked."""
         for _ in range(longest):
-            due = [timer.interrupt for timer in self.timers.values() if timer.interrupts]
+            due = [timer.kind.compare for timer in self.timers.values() if timer.interrupts]
             due = [number for number in due if number in self.enabled]
             if not due:
                 return
@@ -220,9 +236,9 @@ class Stm32h743:
         return write
 
     def _timer(self, address: int) -> tuple[Timer, int] | None:
-        for name, (base, *_) in TIMERS.items():
-            if base <= address < base + 0x400:
-                return self.timers[name], address - base
+        for timer in self.timers.values():
+            if timer.kind.base <= address < timer.kind.base + 0x400:
+                return timer, address - timer.kind.base
         return None
 
     def _read(self, address: int) -> int:
@@ -261,23 +277,7 @@ class Stm32h743:
                 self.enabled = self.enabled | numbers if enable else self.enabled - numbers
                 return
         self.registers[address] = value
-        for name, (_, _, _, clock, reset, bit) in TIMERS.items():
-            timer = self.timers[name]
-            timer.clocked = bool(self.registers.get(RCC + clock, 0) >> bit & 1)
-            if address == RCC + reset and value >> bit & 1:
+        for timer in self.timers.values():
+            timer.clocked = bool(self.registers.get(RCC + CLOCKS[timer.kind.apb], 0) >> timer.kind.bit & 1)
+            if address == RCC + RESETS[timer.kind.apb] and value >> timer.kind.bit & 1:
                 timer.reset()
-
-
-def _load_segments(elf: Path) -> list[tuple[int, bytes]]:
-    """The contents of flash before the reset.
-
-    Source: ELF for the Arm architecture, program headers, physical addresses.
-    """
-    data = elf.read_bytes()
-    (offset,), (size, count) = struct.unpack_from("<I", data, 28), struct.unpack_from("<HH", data, 42)
-    found = []
-    for number in range(count):
-        kind, start, _, physical, length = struct.unpack_from("<5I", data, offset + number * size)
-        if kind == 1 and length > 0:
-            found.append((physical, data[start : start + length]))
-    return found

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from epg.bootstrap import cache_folder
 from epg.catalog.catalog import load_catalog
+from epg.check.communication import tools_for
 from epg.connect.build.messages import Message
 from epg.connect.projects import find_jobs
 from epg.diagnostics import Diagnostics
@@ -63,7 +64,5 @@ def tools_of_project(folder: Path) -> list[str]:
         catalog = load_catalog(job.request.roots, Diagnostics())
         configuration = load_configuration(job.request, catalog, Diagnostics())
         if configuration is not None:
-            names.update(configuration.target.platform.needs)
-            for middleware in configuration.communication.middlewares:
-                names.update(middleware.needs)
+            names |= tools_for(configuration.target, configuration.communication)
     return sorted(names)

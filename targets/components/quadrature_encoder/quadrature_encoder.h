@@ -24,8 +24,9 @@
 
 typedef struct epg_quadrature_encoder_config {
     epg_port_quadrature_t decoder;
-    double rad_per_count; /**< at the load, for one count (x4); negative: counts fall as the angle rises */
-    double preset;        /**< rad; the position after a reset */
+    double rad_per_count;    /**< at the load, for one count (x4); negative: counts fall as the angle rises */
+    double preset;           /**< rad; the position after a reset */
+    uint64_t longest_gap_ns; /**< time in which the counter moves by half of its range, by `max_speed`; 0: unknown */
 } epg_quadrature_encoder_config_t;
 
 /** The state of one encoder; epg_quadrature_encoder_start() sets it. */
@@ -34,6 +35,7 @@ typedef struct epg_quadrature_encoder {
     double origin;       /**< rad at `counts` = 0: 0 before the first reset, then `preset` */
     int64_t counts;      /**< counts since the start or the last reset */
     uint32_t last_count; /**< count of the decoder at the last sample, modulo 2^32 */
+    uint64_t sampled_ns; /**< time of the newest sample; 0: none yet */
     uint32_t resets;     /**< number of resets, modulo 2^32; at each of them the position can jump */
     bool reset_level;    /**< last level of the reset signal, to find its edge */
 } epg_quadrature_encoder_t;
@@ -79,6 +81,19 @@ static inline void epg_quadrature_encoder_reset(epg_quadrature_encoder_t *encode
 static inline bool epg_quadrature_encoder_healthy(const epg_quadrature_encoder_config_t *config)
 {
     return epg_port_quadrature_healthy(&config->decoder);
+}
+
+/**
+ * Takes the time of the newest sample, `now_ns`.  Returns false if so much time has passed since the sample before that
+ * the counter can have moved by half of its range: counts can be lost then, and the position can be wrong until the next
+ * reset.  Must be called once per control cycle, if `longest_gap_ns` is not 0.
+ */
+static inline bool epg_quadrature_encoder_followed(epg_quadrature_encoder_t *encoder,
+                                                   const epg_quadrature_encoder_config_t *config, uint64_t now_ns)
+{
+    const uint64_t before_ns = encoder->sampled_ns;
+    encoder->sampled_ns = now_ns;
+    return before_ns == 0U || now_ns - before_ns < config->longest_gap_ns;
 }
 
 /** Ignores the reset signal while the target is disabled.  A signal that is high afterwards counts as an edge. */

@@ -266,6 +266,7 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
     const epg_application_t *application = control->application;
     uint64_t begin_ns = epg_port_time_ns();
 
+    control->sampled_ns = begin_ns;
     application->sample();
     count_lateness(control, tick_ns, begin_ns);
     control->time_ns = tick_ns;

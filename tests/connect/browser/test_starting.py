@@ -35,6 +35,7 @@ def test_from_model_to_project(started: Served, model: Path, open_page: Open) ->
     # A card shows the contents of its configuration.
     card = page.locator(".card").filter(has=page.get_by_text("rpi_pico_bare_metal_jiwy", exact=True))
     assert "10 of 10 ports match by name" in card.inner_text()
+    card.scroll_into_view_if_needed()  # a picture is fetched when it becomes visible
     until(page, "[...document.querySelectorAll('.card img')].some(image => image.naturalWidth > 0)")
 
     page.get_by_role("radio", name="rpi_pico_bare_metal_jiwy").check()

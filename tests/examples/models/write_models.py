@@ -21,6 +21,7 @@ def model_files() -> dict[Path, str]:
         Path("relbot/model"): cpp_class(relbot.control()),
         Path("relbot/plant"): cpp_class(relbot.plant()),
         Path("existing_firmware/station/model"): c_function(turntable.control()),
+        Path("existing_cubemx_repository/controller/model"): c_function(turntable.control()),
         Path("existing_pico_repository/turntable/model"): c_function(turntable.control()),
         Path("existing_zephyr_application/model"): c_function(turntable.control()),
     }

@@ -3,30 +3,12 @@
 
 from __future__ import annotations
 
-import os
-import socket
-
 import pytest
 
 from tests.xrce_agent import Agent, float64, read_float64
-from tests.xrce_agent.links import SerialLink
 
 from .free_running import FreeRunning
-
-
-class SocketLink(SerialLink):
-    """A serial line that is a connection."""
-
-    address = "uart"
-
-    def __init__(self, connection: socket.socket) -> None:
-        super().__init__()
-        self._connection = connection
-
-    def open(self) -> None:
-        if self._file < 0:
-            self._file = os.dup(self._connection.fileno())
-            os.set_blocking(self._file, False)
+from .socket_link import SocketLink
 
 
 def position(board: FreeRunning, agent: Agent, setpoint: float) -> float:

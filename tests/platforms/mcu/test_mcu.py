@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 import subprocess
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -27,10 +28,10 @@ def test_no_file_of_theirs_names_a_chip() -> None:
     assert [name for name, text in code.items() if re.search("pico|rp2", text, re.IGNORECASE)] == []
 
 
-@pytest.mark.parametrize("core", CORES)
-def test_bare_metal_compiles_for_other_cores(core: str) -> None:
+@pytest.mark.parametrize("processor", CORES)
+def test_bare_metal_compiles_for_other_cores(processor: str) -> None:
     skip_if_missing(arm_gcc)
-    compile_only(core, [*(PLATFORMS / "mcu" / "src").glob("*.c"), *(PLATFORMS / "bare_metal" / "src").glob("*.c")])
+    compile_only(processor, [*(PLATFORMS / "mcu" / "src").glob("*.c"), *(PLATFORMS / "bare_metal" / "src").glob("*.c")])
 
 
 def test_freertos_compiles_for_a_cortex_m7() -> None:
@@ -39,6 +40,80 @@ def test_freertos_compiles_for_a_cortex_m7() -> None:
     folders += [PLATFORMS / "freertos" / "include", HERE / "family" / "freertos" / "include"]
     sources = [*(PLATFORMS / "mcu" / "src").glob("*.c"), *(PLATFORMS / "freertos" / "src").glob("*.c")]
     compile_only("cortex-m7", sources, *(f"-I{folder}" for folder in folders), "-mfpu=fpv5-d16", "-mfloat-abi=hard")
+
+
+def test_control_on_one_core_compiles_for_a_cortex_m3(tmp_path: Path) -> None:
+    """QEMU runs it on a Cortex-M4F and on a Cortex-M7: tests/platforms/one_core."""
+    skip_if_missing(arm_gcc, core)
+    one_core = PLATFORMS / "mcu" / "one_core"
+    family = HERE.parent / "one_core" / "targets" / "families" / "mps2"
+    (tmp_path / "epg_mps2_target.h").write_text("#define EPG_MPS2_MIDDLEWARE_STACK 2048\n", encoding="utf-8")
+    folders = [tmp_path, family / "include", one_core / "include"]
+    options = [*(f"-I{folder}" for folder in folders), "-isystem", str(core() / "CMSIS" / "Core" / "Include")]
+    sources = [*(one_core / "src").glob("*.c"), *(one_core / "bare_metal").glob("*.c")]
+    compile_only("cortex-m3", sources, *options, includes=INCLUDES[1:])
+
+
+def test_freertos_takes_a_configuration_of_stm32cubemx(tmp_path: Path) -> None:
+    skip_if_missing(arm_gcc, kernel)
+    config = tmp_path / "FreeRTOSConfig.h"
+    folders = [tmp_path, kernel() / "include", kernel() / "portable" / "GCC" / "ARM_CM4F"]
+    options = [*(f"-I{folder}" for folder in folders), "-mfpu=fpv5-d16", "-mfloat-abi=hard"]
+    sources = [*(PLATFORMS / "mcu" / "src").glob("*.c"), PLATFORMS / "freertos" / "src" / "service.c"]
+    config.write_text(CUBEMX, encoding="utf-8")
+    compile_only("cortex-m7", sources, *options)
+    config.write_text(CUBEMX.replace("1000)", "100)"), encoding="utf-8")
+    with pytest.raises(AssertionError, match="EPG needs configTICK_RATE_HZ 1000"):
+        compile_only("cortex-m7", sources, *options)
+
+
+CUBEMX = """
+#include <stdint.h>
+extern uint32_t SystemCoreClock;
+#define configENABLE_FPU                         0
+#define configENABLE_MPU                         0
+#define configUSE_PREEMPTION                     1
+#define configSUPPORT_STATIC_ALLOCATION          1
+#define configSUPPORT_DYNAMIC_ALLOCATION         1
+#define configUSE_IDLE_HOOK                      0
+#define configUSE_TICK_HOOK                      0
+#define configCPU_CLOCK_HZ                       ( SystemCoreClock )
+#define configTICK_RATE_HZ                       ((TickType_t)1000)
+#define configMAX_PRIORITIES                     ( 56 )
+#define configMINIMAL_STACK_SIZE                 ((uint16_t)128)
+#define configTOTAL_HEAP_SIZE                    ((size_t)15360)
+#define configMAX_TASK_NAME_LEN                  ( 16 )
+#define configUSE_TRACE_FACILITY                 1
+#define configUSE_16_BIT_TICKS                   0
+#define configUSE_MUTEXES                        1
+#define configUSE_RECURSIVE_MUTEXES              1
+#define configUSE_COUNTING_SEMAPHORES            1
+#define configUSE_PORT_OPTIMISED_TASK_SELECTION  0
+#define configUSE_TIMERS                         1
+#define configTIMER_TASK_PRIORITY                ( 2 )
+#define configTIMER_QUEUE_LENGTH                 10
+#define configTIMER_TASK_STACK_DEPTH             256
+#define INCLUDE_vTaskPrioritySet             1
+#define INCLUDE_uxTaskPriorityGet            1
+#define INCLUDE_vTaskDelete                  1
+#define INCLUDE_vTaskSuspend                 1
+#define INCLUDE_vTaskDelay                   1
+#define INCLUDE_xTaskGetSchedulerState       1
+#define INCLUDE_xTimerPendFunctionCall       1
+#define INCLUDE_xQueueGetMutexHolder         1
+#define INCLUDE_uxTaskGetStackHighWaterMark  1
+#define INCLUDE_xTaskGetCurrentTaskHandle    1
+#define INCLUDE_eTaskGetState                1
+#define configPRIO_BITS                      4
+#define configLIBRARY_LOWEST_INTERRUPT_PRIORITY 15
+#define configLIBRARY_MAX_SYSCALL_INTERRUPT_PRIORITY 5
+#define configKERNEL_INTERRUPT_PRIORITY ( configLIBRARY_LOWEST_INTERRUPT_PRIORITY << (8 - configPRIO_BITS) )
+#define configMAX_SYSCALL_INTERRUPT_PRIORITY ( configLIBRARY_MAX_SYSCALL_INTERRUPT_PRIORITY << (8 - configPRIO_BITS) )
+#define configASSERT( x ) if ((x) == 0) {taskDISABLE_INTERRUPTS(); for( ;; );}
+#define vPortSVCHandler    SVC_Handler
+#define xPortPendSVHandler PendSV_Handler
+"""
+"""As STM32CubeMX writes it for an STM32H7 with CMSIS-RTOS 2, without its comments."""
 
 
 def test_the_store_and_the_ticks(tmp_path: Path) -> None:
@@ -51,10 +126,14 @@ def kernel() -> Path:
     return tool("freertos_kernel")
 
 
-def compile_only(core: str, sources: list[Path], *options: str) -> None:
+def core() -> Path:
+    return tool("cmsis_core")
+
+
+def compile_only(processor: str, sources: list[Path], *options: str, includes: Sequence[Path] = INCLUDES) -> None:
     assert len(sources) >= 4
     for source in sources:
-        command = [str(arm_gcc()), "-std=gnu11", f"-mcpu={core}", "-mthumb", "-O2", "-c", "-o", "/dev/null"]
-        command += [*STRICT, *(f"-I{folder}" for folder in INCLUDES), *options, "-DEPG_MCU_START=robot_start"]
+        command = [str(arm_gcc()), "-std=gnu11", f"-mcpu={processor}", "-mthumb", "-O2", "-c", "-o", "/dev/null"]
+        command += [*STRICT, *(f"-I{folder}" for folder in includes), *options, "-DEPG_MCU_START=robot_start"]
         done = subprocess.run([*command, str(source)], capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr

@@ -131,6 +131,17 @@ TEST(encoder_whose_decoder_has_stopped)
     CHECK(!epg_quadrature_encoder_healthy(&encoder_config));
 }
 
+TEST(encoder_that_was_not_sampled_for_too_long)
+{
+    const epg_quadrature_encoder_config_t config = {.longest_gap_ns = 1000};
+    epg_quadrature_encoder_t late = {.sampled_ns = 0};
+    CHECK(epg_quadrature_encoder_followed(&late, &config, 5000)); /* the first sample */
+    CHECK(epg_quadrature_encoder_followed(&late, &config, 5999));
+    CHECK(!epg_quadrature_encoder_followed(&late, &config, 6999));
+    CHECK(epg_quadrature_encoder_followed(&late, &config, 7000)); /* the fault is latched elsewhere */
+    CHECK(!epg_quadrature_encoder_followed(&late, &config, UINT64_C(10000000000)));
+}
+
 TEST(encoder_reset_by_nan_does_nothing)
 {
     begin_encoder(0);
@@ -458,8 +469,9 @@ RUN(ENTRY(encoder_starts_at_zero_wherever_the_decoder_stands), ENTRY(encoder_wra
     ENTRY(encoder_reset_loses_no_counts), ENTRY(encoder_reset_acts_on_a_rising_edge_only),
     ENTRY(encoder_reset_by_nan_does_nothing), ENTRY(encoder_first_high_signal_after_withholding_is_an_edge),
     ENTRY(encoder_counts_its_resets), ENTRY(encoder_whose_decoder_has_stopped), ENTRY(encoder_of_simulated_edges),
-    ENTRY(bridge_starts_coasting), ENTRY(bridge_started_again_drives_again), ENTRY(bridge_sign_gives_the_direction),
-    ENTRY(bridge_inverted), ENTRY(bridge_limits_and_says_so), ENTRY(bridge_coasts_on_a_duty_that_is_not_finite),
+    ENTRY(encoder_that_was_not_sampled_for_too_long), ENTRY(bridge_starts_coasting),
+    ENTRY(bridge_started_again_drives_again), ENTRY(bridge_sign_gives_the_direction), ENTRY(bridge_inverted),
+    ENTRY(bridge_limits_and_says_so), ENTRY(bridge_coasts_on_a_duty_that_is_not_finite),
     ENTRY(bridge_coasts_below_half_a_clock), ENTRY(bridge_never_drives_the_wrong_way),
     ENTRY(bridge_leaves_the_direction_alone_while_the_sign_stays), ENTRY(bridge_safe_writes_every_signal),
     ENTRY(pwm_starts_safe), ENTRY(pwm_limits_and_says_so), ENTRY(pwm_is_safe_on_a_duty_that_is_not_finite),

@@ -139,9 +139,10 @@ TEST(faults_have_names)
 {
     static const epg_kind_fault_t faults[] = {{6, "stall"}, {300, "too hot"}};
     const epg_target_t target = {.fault_count = 2, .faults = faults};
-    static const char *const names[] = {
-        "none",    "not finite", "model stopped", "overrun",  "setpoint timeout", "fail-safe", "stall", "unknown",
-        "unknown", "unknown",    "unknown",       "watchdog", "processor",        "output",    "tick",  "unknown"};
+    static const char *const names[] = {"none",      "not finite", "model stopped", "overrun", "setpoint timeout",
+                                        "fail-safe", "stall",      "unknown",       "unknown", "unknown",
+                                        "unknown",   "watchdog",   "processor",     "output",  "tick",
+                                        "priority",  "unknown"};
     for (unsigned int i = 0; i < sizeof names / sizeof names[0]; i++) {
         CHECK(strcmp(epg_target_fault(&target, (epg_fault_t)i), names[i]) == 0);
     }

@@ -100,11 +100,10 @@ static void __attribute__((naked)) on_service(void)
 bool epg_mcu_service_start(void (*serve)(void))
 {
     epg_mcu_stack_paint(stack.bottom, stack.top);
-    service = serve;
     if (!epg_family_service_claim(on_service, PERIOD_US)) {
-        service = NULL;
         return false;
     }
+    service = serve; /* last: a transport that wakes the service earlier would pend an interrupt that is not claimed */
     return true;
 }
 

@@ -22,11 +22,11 @@
 #if !INCLUDE_xTaskGetCurrentTaskHandle && !configUSE_RECURSIVE_MUTEXES
 #error "FreeRTOSConfig.h: EPG needs INCLUDE_xTaskGetCurrentTaskHandle 1"
 #endif
-#if configNUMBER_OF_CORES != 1
+#if defined(configNUMBER_OF_CORES) && configNUMBER_OF_CORES != 1 /* kernels before 11.0.0 always have one core */
 #error "FreeRTOSConfig.h: EPG needs configNUMBER_OF_CORES 1, because the control loop runs outside the kernel"
 #endif
-#if configTICK_RATE_HZ != 1000
-#error "FreeRTOSConfig.h: EPG needs configTICK_RATE_HZ 1000, so that communication runs every millisecond"
-#endif
+/* Not a condition of the preprocessor: STM32CubeMX writes ((TickType_t)1000). */
+_Static_assert(configTICK_RATE_HZ == 1000,
+               "FreeRTOSConfig.h: EPG needs configTICK_RATE_HZ 1000, so that communication runs every millisecond");
 
 #endif

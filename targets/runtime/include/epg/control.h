@@ -174,6 +174,7 @@ struct epg_control {
     bool initialise;     /**< the model must be initialised in this or the next cycle */
     bool model_valid;    /**< false: the model is not initialised, or stopped after a fault */
     bool setpoints_move; /**< a setpoint has a timeout or a rate limit: values change without a new sample */
+    uint64_t sampled_ns; /**< time at which the sensors were sampled in the newest cycle */
     uint32_t until_step; /**< cycles until the model's next step */
     uint32_t consecutive_overruns;
     uint32_t request_seen;

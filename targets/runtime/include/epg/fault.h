@@ -35,6 +35,7 @@ typedef enum epg_fault {
     EPG_FAULT_PROCESSOR,        /**< a hard fault, failed assertion, panic or stack overflow caused the last reset */
     EPG_FAULT_OUTPUT,           /**< the driver of an output refused a write */
     EPG_FAULT_TICK,             /**< the timer of the control cycle has a period that is not the control period */
+    EPG_FAULT_PRIORITY,         /**< another interrupt has the control cycle's priority, and could delay it */
     EPG_FAULT_LARGEST = 0xFFFF  /**< the largest possible number, so that the type has room for it */
 } epg_fault_t;
 

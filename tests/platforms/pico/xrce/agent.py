@@ -12,6 +12,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 from tests.emulator.emulator import CYCLES_PER_MILLISECOND, Emulator
 from tests.xrce_agent.agent import Agent
@@ -23,6 +24,14 @@ HEARTBEAT = 0.2
 """Seconds between two heartbeats of the agent."""
 SLICE = 0.005
 """Seconds after which the agent checks its timers even if no frame has arrived."""
+
+
+class Board(Protocol):
+    """A simulated board.  ``cycle``: its time, in cycles of 8 ns."""
+
+    @property
+    def cycle(self) -> int: ...
+    def run(self, *, milliseconds: float, **stop: Any) -> Any: ...
 
 
 @dataclass(frozen=True)
@@ -114,9 +123,12 @@ class UartLink(UsbLink):
 class BoardAgent(Agent):
     """An agent without a thread: it works while the test lets time pass."""
 
-    def __init__(self, pico: Emulator, link: UsbLink | None = None, seed: int = 1) -> None:
+    def __init__(self, pico: Board, link: UsbLink | None = None, seed: int = 1) -> None:
         self.pico = pico
-        self.serial = link if link is not None else UsbLink(pico)
+        if link is None:
+            assert isinstance(pico, Emulator)
+            link = UsbLink(pico)
+        self.serial = link
         self.said: list[Said] = []
         self._next_beat = 0.0
         super().__init__(self.serial, seed=seed, heartbeat=HEARTBEAT, clock=self.now)

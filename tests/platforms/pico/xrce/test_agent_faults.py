@@ -15,7 +15,7 @@ from tests.platforms.pico.images import PLATFORMS, skip_unless_emulated
 from .board import Jiwy
 from .scenarios import SCENARIOS, assert_is_back, hold, restart
 
-RESTARTS = 20
+RESTARTS = 10
 ON_FREERTOS = ("cable",)
 
 
