@@ -25,7 +25,10 @@ def test_a_period_is_20_ms_and_of_one_control_cycle(robot: Path, agent: Agent) -
 
 
 def test_every_cycle_is_published_once(complete_robot: Path, agent: Agent) -> None:
-    """With ``keep_cycles``: reliable and best effort, although the communication runs less often than the control."""
+    """With ``keep_cycles``: reliable and best effort, although the communication runs less often than the control.
+
+    Other topics may leave out a publication if this computer stops the program for longer than their period.
+    """
     with Board(complete_robot, agent) as board:
         board.running()
         agent.wait_until(lambda: len(board.values("cycles")) > 1500)
@@ -36,7 +39,6 @@ def test_every_cycle_is_published_once(complete_robot: Path, agent: Agent) -> No
             # Periods are of time.  If this computer makes the program miss a tick, one step is shorter.
             assert set(steps) <= {1, step}
             assert step == 1 or steps.count(1) <= board.statistic("missed")
-        assert board.statistic("unsent") == 0
         assert board.stop() == ""
 
 
