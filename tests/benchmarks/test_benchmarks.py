@@ -32,6 +32,7 @@ SMALLEST = {
     "pico_closed_loop": ["--short", "1"],
     "pico_communication": ["--targets", "1"],
     "setpoint_latency": ["--steps", "20", "--platforms", "1"],
+    "teleoperation": ["--seeds", "1"],
     "pico_ping_pong": ["--pings", "5", "--flat", "20", "--platforms", "1", "--combinations", "1"],
     "network_situations": ["--only", "4", "--seconds", "3"],
     "xrce_round_trip": ["--count", "5"],
@@ -60,14 +61,14 @@ def test_it_runs_and_prints_what_the_page_shows(program: str) -> None:
         pytest.skip("valgrind is not installed: apt install valgrind")
     if program in ("configure", "scaling", "system") and shutil.which("cmake") is None:
         pytest.skip("cmake is not installed: apt install cmake")
-    if program.startswith("pico") or program == "setpoint_latency":
+    if program.startswith("pico") or program in ("setpoint_latency", "teleoperation"):
         skip_if_missing(pico_sdk, arm_gcc, node, rp2040js, unicorn, lambda: tool("freertos_kernel"))
     if program == "stm32_cycle":
         skip_if_missing(arm_gcc, unicorn, *(lambda name=name: tool(name) for name in STM32))
     if program in ("network_situations", "ping_pong"):
         pytest.importorskip("cyclonedds", reason="CycloneDDS for Python is not installed: pip install cyclonedds")
         skip_if_missing(lambda: tool("cyclonedds"))
-    if program in ("xrce_round_trip", "pico_ping_pong", "setpoint_latency"):
+    if program in ("xrce_round_trip", "pico_ping_pong", "setpoint_latency", "teleoperation"):
         skip_if_missing(lambda: tool("micro_xrce_dds_client"), lambda: tool("micro_cdr"))
     printed = run(program)
     titles = re.findall(r"^(.+)\n-+$", printed, flags=re.MULTILINE)

@@ -115,10 +115,10 @@ class Emulator:
 
     # Serial port ------------------------------------------------------------------------------------------------------
 
-    def send(self, text: str | bytes, *, port: int = 0) -> None:
-        """Gives the USB host text that it sends to a serial port of the device."""
+    def send(self, text: str | bytes, *, port: int = 0, at: int | None = None) -> None:
+        """Gives the USB host text that it sends to a serial port of the device: now, or at the cycle ``at``."""
         data = text.encode() if isinstance(text, str) else text
-        self.call("usb_send", hex=data.hex(), port=port)
+        self.call("usb_send", hex=data.hex(), port=port, **({} if at is None else {"at": at}))
 
     def receive(self, *, port: int = 0) -> str:
         """Takes the text that the firmware printed.  Bytes that are not UTF-8 become replacement characters."""

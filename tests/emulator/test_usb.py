@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from .emulator import Emulator
+from .emulator import CYCLES_PER_MILLISECOND, Emulator
 
 USB_INTERRUPT = 16 + 5
 
@@ -89,6 +89,14 @@ def test_a_bus_reset_enumerates_anew(pico: Emulator) -> None:
     assert pico.call("usb")["state"] == "configured"
     pico.send("back\n")
     assert "echo back" in pico.run_until_text("back\n")
+
+
+def test_text_is_sent_at_its_cycle(pico: Emulator) -> None:
+    at = pico.cycle + 5 * CYCLES_PER_MILLISECOND
+    pico.send("later\n", at=at)
+    pico.run(until=at)
+    assert pico.receive() == ""
+    assert "echo later" in pico.run_until_text("later\n", milliseconds=5)
 
 
 @pytest.mark.parametrize(("request_code", "reason"), [(1, "usb boot"), (2, "end")])

@@ -7,60 +7,22 @@ in real time.
 
 from __future__ import annotations
 
-import contextlib
-import os
-import select
 import signal
 import subprocess
-import tty
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from tests.emulator.emulator import CYCLES_PER_MILLISECOND, Emulator
 from tests.platforms.pico.images import skip_unless_emulated
 from tests.platforms.pico.xrce.agent import BoardAgent
-from tests.platforms.pico.xrce.board import AGENT_PORT, Jiwy
+from tests.platforms.pico.xrce.board import Jiwy
 from tests.platforms.pico.xrce.checks import assert_undisturbed
+from tests.platforms.pico.xrce.line import Line
 from tests.ros2.test_ros2_agent import GRAPH_AGENT, environment, graph_agent, node_script
 from tests.xrce_agent.real_agent import RealAgent, free_domain
 
-STEP = 1.0  # ms of the emulated chip between two exchanges of bytes
 LONGEST = 60_000.0  # ms of the emulated chip
-
-
-class Line:
-    """A pseudo terminal for the agent at one end, and the board's USB port at the other."""
-
-    def __init__(self, pico: Emulator) -> None:
-        self.pico = pico
-        self._master, self._slave = os.openpty()
-        tty.setraw(self._slave)
-        os.set_blocking(self._master, False)
-        self.path = os.ttyname(self._slave)
-        pico.call("usb_open", port=AGENT_PORT)
-
-    def run(self, milliseconds: float) -> None:
-        self.run_until(lambda: False, milliseconds)
-
-    def run_until(self, condition: Callable[[], bool], milliseconds: float) -> bool:
-        """Lets time pass on the chip until ``condition`` is true, at most this long; True if it became true."""
-        end = self.pico.cycle + round(milliseconds * CYCLES_PER_MILLISECOND)
-        while not condition():
-            if self.pico.cycle >= end:
-                return False
-            if select.select([self._master], [], [], 0)[0]:
-                self.pico.send(os.read(self._master, 4096), port=AGENT_PORT)
-            self.pico.run(milliseconds=STEP)
-            data = self.pico.receive_bytes(port=AGENT_PORT)
-            with contextlib.suppress(OSError):  # bytes that the agent does not read are lost
-                os.write(self._master, data)
-        return True
-
-    def close(self) -> None:
-        os.close(self._master)
-        os.close(self._slave)
 
 
 class LiveJiwy(Jiwy):

@@ -371,21 +371,24 @@ export class Commands {
     /**
      * Watches the code of {core} from {from} up to {to} (symbols or addresses; `to: "return"` is the return of the
      * function `from`) under {name}.  Records the cycles and instructions of each passage, its accesses to flash, and
-     * the number of different lines of the flash cache (8 bytes) that these accesses used.
+     * the number of different lines of the flash cache (8 bytes) that these accesses used.  With {register}, a passage
+     * also has the value of this register at its begin, such as an argument of the function.
      */
-    watch_span({ name, core, from, to }) {
+    watch_span({ name, core, from, to, register }) {
         const { machine } = this;
         const span = { open: null, passages: [], flash: [], flashTotal: 0, lines: new Set() };
         this.spans.set(need(name, 'name'), span);
         const close = (at) => {
             if (span.open !== null) {
-                span.passages.push([span.open.cycle, at.time - span.open.cycle, at.instructions - span.open.instructions]);
+                const { cycle, instructions, values } = span.open;
+                span.passages.push([cycle, at.time - cycle, at.instructions - instructions, ...values]);
                 span.open = null;
                 this.recordFlash(at);
             }
         };
         const open = (at) => {
-            span.open = { cycle: at.time, instructions: at.instructions, core: at };
+            const values = register === undefined ? [] : [at.registers[register] >>> 0];
+            span.open = { cycle: at.time, instructions: at.instructions, core: at, values };
             this.recordFlash(at);
             if (to === 'return') {
                 this.closeAtReturn(at, close);
@@ -444,7 +447,7 @@ export class Commands {
         });
     }
 
-    /** Takes {passages: [[cycle, cycles, instructions]], flash: [[cycle, pc, address]], flash_total, flash_lines}. */
+    /** Takes {passages: [[cycle, cycles, instructions, register?]], flash: [[cycle, pc, address]], flash_total, flash_lines}. */
     span({ name }) {
         const span = this.spans.get(name);
         if (span === undefined) {
@@ -460,9 +463,15 @@ export class Commands {
 
     // USB ----------------------------------------------------------------------------------------------------------------
 
-    usb_send({ text, hex, port = 0 }) {
+    /** Gives the host {text} or {hex} to send to serial port {port}: now, or at the cycle {at}. */
+    usb_send({ text, hex, port = 0, at }) {
         const bytes = hex === undefined ? Buffer.from(need(text, 'text'), 'utf8') : Buffer.from(hex, 'hex');
-        this.machine.usbHost.send(bytes, port);
+        const { clock, usbHost } = this.machine;
+        if (at === undefined) {
+            usbHost.send(bytes, port);
+        } else {
+            clock.createAlarm(() => usbHost.send(bytes, port), true).at(at);
+        }
         return null;
     }
 

@@ -17,7 +17,7 @@ from typing import Any, Protocol
 from tests.emulator.emulator import CYCLES_PER_MILLISECOND, Emulator
 from tests.xrce_agent.agent import Agent
 from tests.xrce_agent.framing import AGENT, Deframer, frame
-from tests.xrce_agent.topics import Endpoint
+from tests.xrce_agent.topics import Endpoint, Topics
 
 CLOCK = 1000 * CYCLES_PER_MILLISECOND
 HEARTBEAT = 0.2
@@ -123,7 +123,7 @@ class UartLink(UsbLink):
 class BoardAgent(Agent):
     """An agent without a thread: it works while the test lets time pass."""
 
-    def __init__(self, pico: Board, link: UsbLink | None = None, seed: int = 1) -> None:
+    def __init__(self, pico: Board, link: UsbLink | None = None, seed: int = 1, topics: Topics | None = None) -> None:
         self.pico = pico
         if link is None:
             assert isinstance(pico, Emulator)
@@ -131,7 +131,7 @@ class BoardAgent(Agent):
         self.serial = link
         self.said: list[Said] = []
         self._next_beat = 0.0
-        super().__init__(self.serial, seed=seed, heartbeat=HEARTBEAT, clock=self.now)
+        super().__init__(self.serial, topics, seed=seed, heartbeat=HEARTBEAT, clock=self.now)
         self.topics.taps.append(self._hear)
 
     def now(self) -> float:
