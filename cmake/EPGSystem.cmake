@@ -3,7 +3,8 @@
 #
 # Makes the executable <name>, which simulates all targets of a system, their messages and their plants.  Also makes the
 # CMake target <name>_images, which builds the images of all targets whose families have a project for them, each in its
-# own folder below <name>_images.  An ordinary build does not build it.
+# own folder below <name>_images.  The CMake target <name>_flash builds them, too, and writes them to the boards.  An
+# ordinary build builds neither.
 #
 #   <name>  name of the executable
 #   SYSTEM  the file of the system; a relative path begins at the current source folder
@@ -62,7 +63,7 @@ endfunction()
 
 # _epg_system_images(<name> <system> <images>)
 #
-# Makes the CMake target <name>_images.
+# Makes the CMake targets <name>_images and <name>_flash.
 #   <system>  the file of the system
 #   <images>  the generated file with the list of images
 function(_epg_system_images name system images)
@@ -74,4 +75,10 @@ function(_epg_system_images name system images)
       "-DEPG_BUILD=${CMAKE_CURRENT_BINARY_DIR}/${name}_images" "-DEPG_PYTHON=${python}"
       -P "${here}/epg_build_images.cmake"
     COMMENT "Images of the system ${name}" USES_TERMINAL VERBATIM)
+  _epg_python_folder(folder)
+  add_custom_target(${name}_flash
+    COMMAND ${command} "${python}" "${folder}/__main__.py" flash "${system}"
+      --images "${CMAKE_CURRENT_BINARY_DIR}/${name}_images"
+    COMMENT "Writing the images of the system ${name} to its boards" USES_TERMINAL VERBATIM)
+  add_dependencies(${name}_flash ${name}_images)
 endfunction()

@@ -6,6 +6,7 @@ A schema cannot check this.
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Sequence
 
@@ -108,6 +109,18 @@ def check_family(node: YamlNode, platforms: Sequence[str], diagnostics: Diagnost
     started = node.get("tick_starts", "class")
     if started is not None and started.value not in texts_of(node, "classes"):
         _unknown("class", started, texts_of(node, "classes"), diagnostics)
+    for name in ("chip", "program", "unusable"):
+        _check_expression(node.get("flash", name), diagnostics)
+
+
+def _check_expression(node: YamlNode | None, diagnostics: Diagnostics) -> None:
+    """Reports a text that is not a regular expression."""
+    try:
+        re.compile("" if node is None else str(node.value))
+    except re.error as error:
+        assert node is not None
+        hint = "write a backslash before a character that must be taken literally"
+        diagnostics.error("wrong-value", node.span, f"this is not a regular expression: {error.msg}", hint=hint)
 
 
 def check_target(target: Target, diagnostics: Diagnostics) -> None:

@@ -133,8 +133,9 @@ class Soc:
     users may give them any names.  ``memory`` is the RAM in bytes, None if it is not stated.  ``needs`` are names of
     tools, for platforms that its family implements.  ``clocks`` have the frequencies of the chip's file.
     ``cubemx_name`` is the beginning of its name in STM32CubeMX, or empty; ``cubemx_clocks`` maps clocks to their keys
-    there.  The port layer takes ``dma_streams`` when a target starts: ``dma_users`` maps a class to their number for
-    each claim that carries bytes.
+    there.  ``identity`` is the chip's name in the output of the tool that flashes its family, or empty;
+    ``identity_register`` is the register from which that tool reads it, or None.  The port layer takes ``dma_streams``
+    when a target starts: ``dma_users`` maps a class to their number for each claim that carries bytes.
     """
 
     name: str
@@ -150,6 +151,8 @@ class Soc:
     classes: Mapping[str, ResourceClass]
     cubemx_name: str
     cubemx_clocks: Mapping[str, str]
+    identity: str
+    identity_register: int | None
     dma_streams: tuple[str, ...]
     dma_users: Mapping[str, int]
     files: tuple[Path, ...]  # its own, and those of the chips that it extends
@@ -264,6 +267,7 @@ class Target:
 def make_soc(node: YamlNode, folder: Path) -> Soc:
     """The chip that a checked ``soc.yaml`` describes."""
     automatic, memory = node.get("pins", "automatic"), node.get("memory")
+    register = node.get("identity", "register")
     peripherals = {name: _peripheral(name, child, node) for name, child in map_of(node, "peripherals").items()}
     classes = {name: _resource_class(name, child, node) for name, child in map_of(node, "classes").items()}
     count = automatic.value if automatic is not None and isinstance(automatic.value, int) else 0
@@ -281,6 +285,8 @@ def make_soc(node: YamlNode, folder: Path) -> Soc:
         classes=MappingProxyType(classes),
         cubemx_name=text_of(node["cubemx"], "name") if "cubemx" in node else "",
         cubemx_clocks=MappingProxyType({k: str(v.value) for k, v in map_of(node, "cubemx", "clocks").items()}),
+        identity=text_of(node["identity"], "value") if "identity" in node else "",
+        identity_register=register.value if register is not None and isinstance(register.value, int) else None,
         dma_streams=texts_of(node, "dma", "streams"),
         dma_users=MappingProxyType({k: int(str(v.value)) for k, v in map_of(node, "dma", "users").items()}),
         files=_files(node, folder / "soc.yaml"),

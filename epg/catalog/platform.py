@@ -113,13 +113,45 @@ class Platform(PortLayer):
 
 
 @dataclass(frozen=True)
+class Flashing:
+    """How ``tool`` writes a program to a board: the arguments that follow the program's name.
+
+    ``named_by`` is the key of a system file that names the board.  ``usb`` are the USB ids of the boards or of their
+    debug probes.  In the arguments, ``{board}`` stands for ``by_serial``.  If no file names the board, and it has one
+    of the USB ids ``without_serial``, ``{board}`` stands for ``by_place``.
+
+    ``find`` prints facts about the board, and fails if the board cannot be written yet.  The regular expressions
+    ``chip`` and ``program`` find the chip and the name of the target in these facts, and ``unusable`` finds a message
+    of a tool that has no USB.  ``restart`` makes a board that runs a program ready to be written, and ``leave`` starts
+    its program again; they are empty if a board is always ready.  ``by_hand`` tells the user what to do with a board
+    that does not answer.
+    """
+
+    tool: str
+    named_by: str
+    by_serial: tuple[str, ...]
+    by_place: tuple[str, ...]
+    usb: tuple[str, ...]
+    without_serial: tuple[str, ...]
+    find: tuple[str, ...]
+    restart: tuple[str, ...]
+    leave: tuple[str, ...]
+    write: tuple[str, ...]
+    chip: str
+    program: str
+    unusable: str
+    by_hand: str
+
+
+@dataclass(frozen=True)
 class Family(PortLayer):
     """The port layer of a family of chips for ``platforms`` that are ``by_family``.
 
     ``own`` are instances of peripherals that it uses itself, such as TIM7.  Its port layer starts the peripherals of
     the class ``tick_starts`` together with the timer of the control loop: by a trigger, or as ``start_otherwise`` says.
     ``usb`` holds the default names and numbers of its USB device, if they are data, and the ``serial_digits``;
-    ``usb_needs`` are names of tools that a target with it needs.
+    ``usb_needs`` are names of tools that a target with it needs.  Without ``flash``, ``epg flash`` does not know its
+    boards.
     """
 
     platforms: tuple[str, ...]
@@ -128,6 +160,7 @@ class Family(PortLayer):
     start_otherwise: str
     usb: Mapping[str, object]
     usb_needs: tuple[str, ...]
+    flash: Flashing | None
 
 
 def _values(node: YamlNode, folder: Path, category: str, layer: type[PortLayer]) -> dict[str, Any]:
@@ -167,6 +200,7 @@ def make_family(node: YamlNode, folder: Path) -> Family:
         "tick_starts": text_of(starts, "class") if starts is not None else "",
         "start_otherwise": text_of(starts, "otherwise") if starts is not None else "",
         "usb": MappingProxyType({key: child.value for key, child in map_of(node, "usb").items()}),
+        "flash": Flashing(**values_of(node["flash"], Flashing)) if "flash" in node else None,
     }
     return Family(**values)
 

@@ -36,6 +36,7 @@ COMMANDS = {
     "explain": "show the path from a model port to its pin",
     "graph": "draw the application, the control cycle or the wiring of the board, as SVG",
     "simulate": "run a host executable through a scenario and check its limits",
+    "flash": "write the images of a system to its boards",
     "launch": "write a ROS 2 launch file, or systemd units, for the agents of targets",
     "record": "record the topics that a target publishes and receives on ROS 2",
     "describe": "write layouts for PlotJuggler and Foxglove with the values of a target",

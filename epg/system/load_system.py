@@ -61,8 +61,8 @@ class _Reader:
         number = count.value if count is not None and isinstance(count.value, int) else 0
         names = tuple(f"{name}_{i}" for i in range(1, number + 1)) if number else (name,)
         self.groups[name] = names
-        serials = self.serials(node.get("serial"), len(names))
-        for target, serial in zip(names, serials):
+        serials, probes = (self.serials(node.get(key), len(names)) for key in ("serial", "probe"))
+        for target, serial, probe in zip(names, serials, probes):
             check_name(target, span, self.diagnostics)
             other = self.targets.get(target)
             if other is not None:
@@ -78,6 +78,7 @@ class _Reader:
                 plant_bindings=self.file(node, "plant_bindings"),
                 settings=settings,
                 serial=serial,
+                probe=probe,
                 clock=self.clock(node.get("clock")),
                 span=span,
             )
@@ -109,11 +110,11 @@ class _Reader:
         return serials
 
     def check_serials(self, section: YamlNode) -> None:
-        """Reports boards that two targets name."""
+        """Reports boards and debug probes that two targets name."""
         seen: dict[str, Span] = {}
         for _, node in section.items():
-            stated = node.get("serial")
-            for element in () if stated is None else stated.elements() or (stated,):
+            stated = [found for key in ("serial", "probe") if (found := node.get(key)) is not None]
+            for element in (element for found in stated for element in found.elements() or (found,)):
                 first = seen.setdefault(str(element.value), element.span)
                 if first != element.span:
                     message = f"serial number '{element.value}' belongs to another target already"

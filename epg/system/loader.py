@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 
 from epg.catalog.catalog import Catalog, load_catalog
+from epg.catalog.platform import Family
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
 from epg.models import load_model
@@ -32,6 +33,10 @@ class Loader:
     @cached_property
     def _catalog(self) -> Catalog:
         return load_catalog(self.roots, self.diagnostics)
+
+    def family(self, name: str) -> Family | None:
+        """The family of chips ``name``, or None if it has no port layer."""
+        return self._catalog.find_family(name)
 
     def applications(self, requests: Iterable[tuple[str, Request]]) -> dict[str, Application]:
         """The applications of requests, by the names that are given with them.

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from epg.check.simulated import PLATFORM
 from epg.diagnostics import Diagnostics
@@ -15,6 +14,7 @@ from epg.emit.symbols import TEMPLATES
 from epg.emit.template import environment
 from epg.resolve.application import Application, Topic
 from epg.system.check_system import CheckedSystem
+from epg.system.images import images_of
 from epg.system.system import Connection, End
 
 
@@ -77,21 +77,10 @@ def simulation_outputs(
     env = environment([TEMPLATES, *loader.roots])
     template = env.get_template(f"platforms/{PLATFORM}/system.c.j2")
     files = {f"{program}_system.c": template.render(system=system, targets=targets, connections=connections)}
-    files[f"{program}_images.cmake"] = images_cmake(_images(checked), names)
+    files[f"{program}_images.cmake"] = images_cmake(images_of(checked), names)
     used = {path for application in applications.values() for path in application.files}
     cmake = system_cmake(program, sorted(used), [target.name for target in targets], files, names)
     return with_licence({**files, f"{program}.cmake": cmake})
-
-
-def _images(checked: CheckedSystem) -> list[tuple[str, Path, str]]:
-    """The targets whose family has a project for images: the name, the project's folder, and the SDK's board."""
-    found = []
-    for name, application in checked.applications.items():
-        target = application.target
-        folder = None if target.platform.family is None else target.platform.family.folder / "image"
-        if folder is not None and folder.is_dir():
-            found.append((name, folder, target.board.sdks.get(target.platform.sdk, "")))
-    return found
 
 
 def _connection(

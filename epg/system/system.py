@@ -33,7 +33,10 @@ class Transport:
 
 @dataclass(frozen=True)
 class SystemTarget:
-    """One target.  ``settings`` is a part of a ``.tcf``.  ``span`` is the position of the name."""
+    """One target.  ``settings`` is a part of a ``.tcf``.  ``span`` is the position of the name.
+
+    ``serial`` is the serial number of the board, ``probe`` that of its debug probe.
+    """
 
     name: str
     tcf: str
@@ -43,6 +46,7 @@ class SystemTarget:
     plant_bindings: Path | None
     settings: YamlNode | None
     serial: str | None
+    probe: str | None
     clock: Clock
     span: Span
 

@@ -194,7 +194,7 @@ def _said(program: Path) -> str:
         )
     except (OSError, subprocess.TimeoutExpired):
         return ""
-    return done.stdout
+    return done.stdout or done.stderr
 
 
 def _read(file: Path) -> str:

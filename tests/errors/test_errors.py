@@ -12,13 +12,15 @@ A file ``cases/<name>.case`` has the wrong files and EPG's messages about them::
 
 Files that a case does not mention are those of ``common/``; the command is the one above unless the first line gives
 another.  After ``--- name <- edit`` come changes to the common file, one ``old => new`` per line, where ``\\n`` is a
-line end.  ``--- name <- copy PATH`` is a folder of the repository under another name, ``--- name <- python`` the bytes
-that an expression gives.  A folder ``targets`` is in ``EPG_TARGETS_PATH``.  The command may begin with variables of the
-environment, as in a shell.  ``EPG_UPDATE_GOLDEN=1`` rewrites the expected messages: review the difference.
+line end.  ``--- name <- copy PATH`` is a folder of the repository under another name, ``--- name <- python`` the
+bytes that an expression gives.  A file that begins with ``#!`` can be executed.  No boards are attached.  A folder
+``targets`` is in ``EPG_TARGETS_PATH``.  The command may begin with variables of the environment, as in a shell.
+``EPG_UPDATE_GOLDEN=1`` rewrites the expected messages: review the difference.
 """
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -27,6 +29,12 @@ from pathlib import Path
 import pytest
 
 from epg.cli.main import main
+from epg.diagnostics import Diagnostics
+from epg.emit.cmake import PathNames
+from epg.emit.outputs import application_outputs
+from epg.system.check_system import check_system
+from epg.system.load_system import load_system
+from epg.tools import usb_boards
 
 HERE = Path(__file__).resolve().parent
 CASES = sorted((HERE / "cases").glob("*.case"))
@@ -70,6 +78,17 @@ def lay_out(folder: Path, files: dict[str, str]) -> None:
                 source = source.replace(old, new.replace("\\n", "\n"), 1)
             text = source
         path.write_text(text, encoding="utf-8")
+        if text.startswith("#!"):
+            path.chmod(0o755)
+
+
+def image(system: Path, target: str) -> bytes:
+    """A program of a target, as far as EPG reads it: the hash of the target."""
+    diagnostics = Diagnostics()
+    checked = check_system(diagnostics.checked(load_system(system, diagnostics)), (), diagnostics)
+    assert checked is not None
+    files = application_outputs(checked.applications[target], checked.loader.roots, PathNames(None))
+    return json.loads(files[f"{target}.json"])["hash"].encode()
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda path: path.stem)
@@ -80,6 +99,7 @@ def test_message(
     lay_out(tmp_path, files)
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("EPG_TARGETS_PATH", raising=False)
+    monkeypatch.setattr(usb_boards, "DEVICES", tmp_path / "no devices")
     if (tmp_path / "targets").is_dir():
         monkeypatch.setenv("EPG_TARGETS_PATH", "targets")
     variables, _, arguments = f" {command}".partition(" epg ")

@@ -58,6 +58,11 @@ def test_one_command_builds_all_images(project: Project) -> None:
     assert compiled(output) == {"leader"}, "the other image is up to date"
     assert compiled(project.build("--target", "two_images")) == set()
 
+    output = project.build("--target", "two_flash", check=False)
+    assert compiled(output) == set()
+    assert "image-outdated" not in output, "each image contains the hash of its files"
+    assert "the board of 'leader' is not known" in output and "the board of 'follower' is not known" in output
+
 
 def compiled(output: str) -> set[str]:
     """The images for which something was compiled or linked."""
