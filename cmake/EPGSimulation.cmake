@@ -6,7 +6,8 @@
 # target fails if a limit of the scenario does not hold.
 #
 #   <name>      name of the CMake target; `cmake --build build --target <name>` runs the simulation
-#   EXECUTABLE  a host executable of epg_add_executable(), which must exist, or Zephyr's `app` on native_sim
+#   EXECUTABLE  an executable of epg_add_executable() for the host or of epg_add_system(), which must exist, or Zephyr's
+#               `app` on native_sim
 #   SCENARIO    the scenario; a relative path begins at the current source folder
 #   OUTPUT      folder of the results; a relative path begins at the current build folder, which is the default
 #   REALTIME    runs in real time instead of simulated time

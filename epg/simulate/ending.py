@@ -5,8 +5,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
-from epg.simulate.executable import Statistics
+
+class State(Protocol):
+    """The state of a target at the end of a run."""
+
+    @property
+    def enabled(self) -> bool: ...
+
+    @property
+    def fault(self) -> str: ...
+
+    @property
+    def fault_component(self) -> str: ...
 
 
 @dataclass(frozen=True)
@@ -17,7 +29,7 @@ class Ending:
     hint: str = ""
 
 
-def how_it_ended(expected: str, enabled: Sequence[float], statistics: Statistics) -> Ending:
+def how_it_ended(expected: str, enabled: Sequence[float], statistics: State) -> Ending:
     """Compares the end of a run with ``expected``, which is ``Scenario.ends``.
 
     ``enabled`` is the column of the trace: not zero in each cycle in which the target was enabled.
@@ -44,7 +56,7 @@ def how_it_ended(expected: str, enabled: Sequence[float], statistics: Statistics
     return Ending()
 
 
-def _reason(statistics: Statistics) -> str:
+def _reason(statistics: State) -> str:
     if statistics.fault == "none":
         return "by a request"
     return f"{statistics.fault}: {statistics.fault_component}" if statistics.fault_component else statistics.fault

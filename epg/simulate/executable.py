@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs a host executable and reads the files that it wrote."""
+"""Runs a host executable, or the simulation of a system, and reads the files that it wrote."""
 
 from __future__ import annotations
 
@@ -57,18 +57,27 @@ def run_executable(
     """
     folder = folder.resolve()
     # native_sim only accepts options in the form --option=value.  Its simulated flash is a file in the current folder.
-    command = [str(executable.resolve()), "--quiet", f"--duration={duration!r}", f"--setpoints={setpoints.resolve()}"]
-    command += [f"--{option}={folder / f'{option}.csv'}" for option in ("topics", "trace")]
-    command.append(f"--statistics={folder / 'statistics.json'}")
+    options = ["--quiet", f"--duration={duration!r}", f"--setpoints={setpoints.resolve()}"]
+    options += [f"--{option}={folder / f'{option}.csv'}" for option in ("topics", "trace")]
+    options.append(f"--statistics={folder / 'statistics.json'}")
     if realtime:
-        command.append("--realtime")
+        options.append("--realtime")
     unit = "s in real time" if realtime else "s of simulated time"
     progress(f"running {executable.name}: {duration:g} {unit}")
+    run_program(executable, options, folder, duration, realtime=realtime, progress=progress)
+
+
+def run_program(
+    executable: Path, options: list[str], folder: Path, duration: float, *, realtime: bool, progress: Progress
+) -> None:
+    """Runs ``executable`` in ``folder``.  Raises UserError as :func:`run_executable` does."""
     log = folder / "messages.txt"
     try:
         with (
             log.open("wb") as messages,
-            subprocess.Popen(command, stdout=messages, stderr=messages, cwd=folder) as process,
+            subprocess.Popen(
+                [str(executable.resolve()), *options], stdout=messages, stderr=messages, cwd=folder
+            ) as process,
         ):
             if not _wait(process, duration, realtime, progress):
                 process.kill()

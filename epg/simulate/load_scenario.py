@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics, did_you_mean
+from epg.documents.items import map_of
 from epg.documents.schema import load_schema, validate
 from epg.documents.text_file import is_file
 from epg.documents.yaml_file import load_yaml
@@ -23,7 +25,10 @@ _SHAPES = {
     "step": ("to",),
     "sine": ("duration", "height", "frequency"),
 }
-_ACTIONS = ("enable", "setpoint", "lost", "stall", "component")
+_ACTIONS = ("enable", "setpoint", "lost", "stall", "component", "failure")
+_NEEDED = {"setpoint": "topic", "component": "level", "failure": "target"}
+_POSSIBLE = {"enable": ("target",), "lost": ("topic", "target")}
+_SIGNAL = re.compile(r"([^/]+/)?(plant\.)?(inputs|outputs)\.[^/]+")
 MAX_SETPOINTS = 2_000_000
 
 
@@ -46,22 +51,25 @@ class _Reader:
     def __init__(self, diagnostics: Diagnostics) -> None:
         self.diagnostics = diagnostics
         self.names: list[tuple[str, str, Span]] = []
+        self.of_systems: list[Span] = []
+        self.of_targets: list[Span] = []
 
     def scenario(self, path: Path, root: YamlNode) -> Scenario:
         duration = self.time(root["duration"], positive=True)
         interval = self.time(root["interval"], positive=True) if "interval" in root else Fraction(33, 1000)
-        setpoints = root["setpoints"]
-        if duration / interval * len(setpoints.plain()) > MAX_SETPOINTS:
+        setpoints = map_of(root["setpoints"]) if "setpoints" in root else {}
+        if duration / interval * len(setpoints) > MAX_SETPOINTS:
             node = root.get("interval") or root["duration"]
             message = f"this scenario sends more than {MAX_SETPOINTS} setpoints"
             self.error("too-many-setpoints", node, message, "use a longer interval")
-        self.names += [("topic", topic, setpoints.key_span(topic)) for topic, _ in setpoints.items()]
+        self.names += [("topic", topic, root["setpoints"].key_span(topic)) for topic in setpoints]
         profiles = {topic: self.profile(node, duration) for topic, node in setpoints.items()}
         reference = root.get("reference")
         if reference is not None and not is_file(path.parent / str(reference.value)):
             hint = did_you_mean(str(reference.value), [file.name for file in path.parent.glob("*.py")])
             self.error("file-not-found", reference, f"there is no file '{reference.value}'", hint)
-        events, ends = root.get("events"), root.get("ends")
+        events = root.get("events")
+        ends, ends_of = self.ends(root.get("ends"))
         return Scenario(
             path=path,
             duration=duration,
@@ -70,9 +78,20 @@ class _Reader:
             profiles=profiles,
             events=tuple(self.event(node, duration, profiles) for node in (events.elements() if events else ())),
             axes=tuple(self.axis(name, node, duration, profiles) for name, node in root["axes"].items()),
-            ends=str(ends.value) if ends is not None else "enabled",
+            ends=ends,
+            ends_of=ends_of,
             names=tuple(self.names),
+            of_systems=tuple(self.of_systems),
+            of_targets=tuple(self.of_targets),
         )
+
+    def ends(self, node: YamlNode | None) -> tuple[str, dict[str, str]]:
+        """The expected end, and those of single targets of a system."""
+        if node is None or not node.is_mapping:
+            return "enabled" if node is None else str(node.value), {}
+        self.of_systems.append(node.span)
+        self.names += [("target", target, node.key_span(target)) for target, _ in node.items()]
+        return "enabled", {target: str(end.value) for target, end in node.items()}
 
     def profile(self, node: YamlNode, duration: Fraction) -> Profile:
         initial = self.value(node["initial"]) if "initial" in node else 0.0
@@ -122,28 +141,42 @@ class _Reader:
             self.error("wrong-event", node["at"], message, f"write one of {', '.join(_ACTIONS)}")
             return Event(at, "none")
         action = actions[0]
-        needed = {"setpoint": "topic", "component": "level"}.get(action)
+        needed, possible = _NEEDED.get(action), _POSSIBLE.get(action, ())
         if needed and needed not in node:
             self.error("missing-key", node[action], f"'{needed}' is missing beside '{action}'")
             return Event(at, "none")
         for key, value in node.items():
-            if key not in ("at", action, needed) and not (key == "topic" and action == "lost"):
+            if key not in ("at", action, needed, *possible):
                 self.error("unknown-key", value, f"'{key}' has no meaning beside '{action}'")
         if at >= duration:
             self.error("beyond-duration", node["at"], f"the run ends at {float(duration):g} s")
+        if "topic" in node and "target" in node and action == "lost":
+            self.error("unknown-key", node["target"], "'target' has no meaning beside 'topic'")
         topic = self.topic(node["topic"], profiles) if "topic" in node else ""
+        target = self.target(node["target"]) if "target" in node else ""
         if action == "enable":
-            return Event(at, "enable" if node["enable"].value else "disable")
+            return Event(at, "enable" if node["enable"].value else "disable", target=target)
+        if action == "failure":
+            return Event(at, str(node["failure"].value), target=target)
         if action == "setpoint":
             return Event(at, "setpoint", topic, self.value(node["setpoint"], finite=False))
         if action == "component":
             name, level = str(node["component"].value), node["level"].value
             self.names.append(("input", name, node["component"].span))
             return Event(at, action, component=name, level=str(int(level)) if isinstance(level, bool) else str(level))
-        return Event(at, action, topic, duration=self.time(node[action], positive=True))
+        if action == "stall":
+            self.of_targets.append(node["stall"].span)
+        return Event(at, action, topic, duration=self.time(node[action], positive=True), target=target)
+
+    def target(self, node: YamlNode) -> str:
+        self.of_systems.append(node.span)
+        self.names.append(("target", str(node.value), node.span))
+        return str(node.value)
 
     def axis(self, name: str, node: YamlNode, duration: Fraction, profiles: Mapping[str, Profile]) -> Axis:
-        topic = self.topic(node["setpoint"], profiles)
+        setpoint = node["setpoint"]
+        follows_signal = _SIGNAL.fullmatch(str(setpoint.value)) is not None
+        topic = str(setpoint.value) if follows_signal else self.topic(setpoint, profiles)
         listed = node.get("windows")
         windows = tuple(self.window(element, duration) for element in (listed.elements() if listed else ()))
         if not windows:
@@ -161,7 +194,8 @@ class _Reader:
             unit=normal_unit(str(unit.value)) if unit else "rad",
             homing=self.homing(homing, duration) if homing else None,
             windows=windows,
-            signals=self.signals(node["position"], duty),
+            signals=self.signals(node["position"], duty, setpoint if follows_signal else None),
+            follows_signal=follows_signal,
         )
 
     def signals(self, *nodes: YamlNode | None) -> tuple[str, ...]:

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics
@@ -14,8 +15,17 @@ from epg.source import Span
 BLACK, BLUE, ORANGE, GREY = "#000000", "#0072B2", "#D55E00", "#999999"
 
 
-def plot(trackings: Sequence[Tracking], path: Path, diagnostics: Diagnostics) -> bool:
-    """Writes the plot into ``path``.  Returns False, after a warning with a remedy, if matplotlib is not installed."""
+GAP = 10.0
+"""The number of control periods without a cycle from which on a line is broken: the target did not run."""
+
+
+def plot(
+    trackings: Sequence[Tracking], path: Path, diagnostics: Diagnostics, marks: Sequence[tuple[float, str]] = ()
+) -> bool:
+    """Writes the plot into ``path``.  Returns False, after a warning with a remedy, if matplotlib is not installed.
+
+    ``marks`` are times in s with a text, such as failures of targets.
+    """
     try:
         from matplotlib.figure import Figure  # not pyplot, which can use a window system and has global state
     except ImportError as error:
@@ -31,14 +41,44 @@ def plot(trackings: Sequence[Tracking], path: Path, diagnostics: Diagnostics) ->
     panels = figure.subplots(2 * count, 1, sharex=True, squeeze=False, gridspec_kw={"height_ratios": [3, 1] * count})
     for number, tracking in enumerate(trackings):
         _draw(tracking, panels[2 * number][0], panels[2 * number + 1][0])
+    for time, text in marks:
+        for panel in panels[:, 0]:
+            panel.axvline(time, color=ORANGE, linewidth=0.9, linestyle=":")
+        style = {"fontsize": "x-small", "rotation": 20.0, "color": ORANGE}
+        panels[0][0].annotate(text, (time, 1.02), xycoords=("data", "axes fraction"), **style)
     panels[-1][0].set_xlabel("time (s)")
-    panels[-1][0].set_xlim(0.0, trackings[0].time[-1])
+    panels[-1][0].set_xlim(0.0, max((tracking.time[-1] for tracking in trackings if tracking.time), default=1.0))
     figure.savefig(path, dpi=150, metadata={"Software": None})
     return True
 
 
+def _broken(tracking: Tracking) -> Tracking:
+    """The same with a value that is not a number in each gap, at which matplotlib breaks a line."""
+    time = tracking.time
+    largest = GAP * (time[1] - time[0]) if len(time) > 1 else 0.0
+    gaps = [at for at in range(1, len(time)) if time[at] - time[at - 1] > largest]
+    if not gaps:
+        return tracking
+
+    def filled(values: Sequence[float], gap: Callable[[int], float]) -> list[float]:
+        parts = [[gap(at), *values[at:end]] for at, end in zip(gaps, [*gaps[1:], len(values)])]
+        return [*values[: gaps[0]], *(value for part in parts for value in part)]
+
+    def column(values: Sequence[float] | None) -> list[float] | None:
+        return None if values is None else filled(values, lambda at: math.nan)
+
+    return Tracking(
+        tracking.axis,
+        filled(time, lambda at: time[at - 1] + largest / GAP),
+        filled(tracking.setpoint, lambda at: math.nan),
+        filled(tracking.position, lambda at: math.nan),
+        column(tracking.reference),
+        column(tracking.duty),
+    )
+
+
 def _draw(tracking: Tracking, upper, lower) -> None:  # type: ignore[no-untyped-def]  # matplotlib brings no types
-    axis = tracking.axis
+    axis, tracking = tracking.axis, _broken(tracking)
     begin = axis.homing.until if axis.homing else 0.0
     shown = [i for i, time in enumerate(tracking.time) if time >= begin]
     if tracking.reference is not None:

@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from epg.diagnostics import Diagnostics
 from epg.simulate.ending import Ending
@@ -27,3 +28,12 @@ class Result:
     def passed(self) -> bool:
         """True if the run ended in the state that the scenario expects, and all its limits hold."""
         return not self.ending.problem and all(check.passed for check in self.checks)
+
+    def data(self) -> dict[str, Any]:
+        """The result for programs, as JSON holds it."""
+        return {
+            "statistics": asdict(self.statistics),
+            "windows": [asdict(window) for window in self.windows],
+            "checks": [asdict(check) for check in self.checks],
+            "ending": asdict(self.ending),
+        }

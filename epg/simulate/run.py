@@ -8,14 +8,15 @@ from pathlib import Path
 
 from epg.diagnostics import Diagnostics
 from epg.simulate.ending import how_it_ended
-from epg.simulate.executable import read_statistics, read_trace, run_executable
+from epg.simulate.executable import fail, read_statistics, read_trace, run_executable
 from epg.simulate.interface import check_names, read_interface
+from epg.simulate.judge import judge
 from epg.simulate.load_scenario import load_scenario
 from epg.simulate.plot import plot
 from epg.simulate.reference import load_reference
 from epg.simulate.result import Result
 from epg.simulate.setpoints import setpoint_rows, write_setpoints
-from epg.simulate.tracking import check, evaluate, track, write_tracking
+from epg.simulate.tracking import write_tracking
 from epg.source import Span
 
 
@@ -41,7 +42,10 @@ def simulate(
     reference = load_reference(read.reference) if read.reference else None
     if realtime and any(event.kind == "stall" for event in read.events):
         diagnostics.warning("no-stall", Span(str(scenario)), "cycles are stalled in simulated time only")
-    check_names(read, read_interface(executable), diagnostics)
+    interface = read_interface(executable)
+    if interface.system:
+        fail(executable, f"'{executable.name}' is the simulation of a system", "call simulate_system()")
+    check_names(read, interface, diagnostics)
     diagnostics.stop_if_errors()
     output.mkdir(parents=True, exist_ok=True)
     names = ("setpoints.csv", "topics.csv", "trace.csv", "statistics.json", "tracking.csv", "tracking.png")
@@ -51,20 +55,18 @@ def simulate(
 
     write_setpoints(setpoint_rows(read, realtime=realtime), files[0])
     run_executable(executable, output, float(read.duration), files[0], realtime=realtime, progress=progress)
-    columns = read_trace(output / "trace.csv", ["enabled", *(signal for axis in read.axes for signal in axis.signals)])
+    columns = read_trace(output / "trace.csv", ["enabled", *read.signals])
     progress("evaluating")
-    trackings = [track(axis, read.profiles[axis.setpoint], columns, reference) for axis in read.axes]
-    write_tracking(trackings, output / "tracking.csv")
-    if not plot(trackings, output / "tracking.png", diagnostics):
+    judged = judge(read, columns, reference)
+    write_tracking(judged.trackings, output / "tracking.csv")
+    if not plot(judged.trackings, output / "tracking.png", diagnostics):
         files.pop()
-    windows = [evaluate(tracking) for tracking in trackings]
-    checks = [held for tracking, results in zip(trackings, windows) for held in check(tracking, results)]
     statistics = read_statistics(output / "statistics.json")
     return Result(
         statistics=statistics,
         ending=how_it_ended(read.ends, columns["enabled"], statistics),
-        windows=tuple(result for results in windows for result in results),
-        checks=tuple(checks),
+        windows=judged.windows,
+        checks=judged.checks,
         files=tuple(files),
         diagnostics=diagnostics,
     )

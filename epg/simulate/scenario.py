@@ -11,11 +11,16 @@ Times are in seconds, values in the unit of their topic.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
+from types import MappingProxyType
 
 from epg.source import Span
+
+FAILURES = ("die", "hang", "restart", "offline", "online")
+"""The failures of a target of a system, and their ends."""
 
 
 @dataclass(frozen=True)
@@ -73,10 +78,11 @@ class Profile:
 
 @dataclass(frozen=True)
 class Event:
-    """An event.  ``kind`` is enable, disable, setpoint, lost, stall or component.
+    """An event.  ``kind`` is enable, disable, setpoint, lost, stall, component, or a failure: :data:`FAILURES`.
 
     ``topic`` is the topic of setpoint and lost; for lost, empty means all topics.  ``value`` is the value of setpoint.
-    ``duration`` belongs to lost and stall.  ``level`` belongs to component: "0", "1", "open" or "plant".
+    ``duration`` belongs to lost and stall.  ``level`` belongs to component: "0", "1", "open" or "plant".  ``target`` is
+    a target of a system; empty means all.
     """
 
     at: Fraction
@@ -86,6 +92,7 @@ class Event:
     duration: Fraction = Fraction(0)
     component: str = ""
     level: str = ""
+    target: str = ""
 
 
 @dataclass(frozen=True)
@@ -114,7 +121,8 @@ class Homing:
 class Axis:
     """An axis to evaluate: the signal ``position`` is compared with the profile of the topic ``setpoint``.
 
-    ``duty`` is the signal that drives the motor, or None.  ``signals`` are all signals of the axis.
+    If ``follows_signal`` is true, ``setpoint`` is a signal, such as the position of another target.  ``duty`` is the
+    signal that drives the motor, or None.  ``signals`` are all signals of the axis.
     """
 
     name: str
@@ -125,14 +133,17 @@ class Axis:
     homing: Homing | None
     windows: tuple[Window, ...]
     signals: tuple[str, ...]
+    follows_signal: bool = False
 
 
 @dataclass(frozen=True)
 class Scenario:
     """A scenario.  ``ends`` is the expected end of the run: enabled, disabled or never_enabled.
 
-    ``interval`` is the time between two setpoints.  ``names`` are the names that must be compared with those of the
-    target: the kind ("topic", "input" or "signal"), the name, and its place in the file.
+    ``ends_of`` are the expected ends of targets of a system that differ from ``ends``.  ``interval`` is the time
+    between two setpoints.  ``names`` are the names that must be compared with those of the target or the system: the
+    kind ("topic", "input", "signal" or "target"), the name, and its place in the file.  ``of_systems`` are the places
+    of what only systems have, and ``of_targets`` of what they do not have.
     """
 
     path: Path
@@ -143,4 +154,12 @@ class Scenario:
     events: tuple[Event, ...]
     axes: tuple[Axis, ...]
     ends: str = "enabled"
+    ends_of: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
     names: tuple[tuple[str, str, Span], ...] = ()
+    of_systems: tuple[Span, ...] = ()
+    of_targets: tuple[Span, ...] = ()
+
+    @property
+    def signals(self) -> list[str]:
+        """The signals of all axes."""
+        return [signal for axis in self.axes for signal in axis.signals]

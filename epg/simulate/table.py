@@ -3,33 +3,54 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from epg.quantity import show
+from epg.simulate.ending import Ending
 from epg.simulate.executable import Statistics
 from epg.simulate.result import Result
-from epg.simulate.tracking import WindowResult
+from epg.simulate.run_system import SystemResult, TargetState
+from epg.simulate.tracking import Check, WindowResult
 
 
-def format_table(result: Result) -> str:
+def format_table(result: Result | SystemResult) -> str:
     """The table as text: counts, times and the errors of each axis, then each limit that did not hold."""
-    rows = _run(result.statistics)
-    lines = [f"{name:<22}{value}" for name, value in rows]
-    if result.windows:
-        width = max(8, *(len(window.axis) + 2 for window in result.windows))
+    if isinstance(result, SystemResult):
+        return _format_system(result)
+    lines = [f"{name:<22}{value}" for name, value in _run(result.statistics)]
+    return "\n".join([*lines, *_judged(result.windows, result.checks, {"": result.ending})])
+
+
+def _format_system(result: SystemResult) -> str:
+    lines = [f"{name:<22}{value}" for name, value in _times(result.duration, result.wall_time)]
+    width = max(len(name) + 2 for name in ("target", *result.targets))
+    lines += ["", f"{'target':<{width}}{'cycles':>16}  {'at the end':<28}events"]
+    for name, state in result.targets.items():
+        end = {"hangs": "hangs", "dead": "dead"}.get(state.state) or _end(state)
+        cycles = f"{state.cycles} of {_time(state.period)}"
+        lines.append(f"{name:<{width}}{cycles:>16}  {end:<28}{_counts(state)}".rstrip())
+    return "\n".join([*lines, *_judged(result.windows, result.checks, result.endings)])
+
+
+def _judged(windows: Sequence[WindowResult], checks: Sequence[Check], endings: Mapping[str, Ending]) -> list[str]:
+    """The errors of each axis, wrong ends of targets, and limits that did not hold."""
+    lines = []
+    if windows:
+        width = max(8, *(len(window.axis) + 2 for window in windows))
         lines += ["", f"{'axis':<{width}}{'window':<16}{'RMS error':>14}{'largest error':>16}{'RMS to ideal':>16}"]
-        lines += [_window(window, width) for window in result.windows]
-    if result.ending.problem:
-        lines += ["", f"FAILED: {result.ending.problem}", f"hint: {result.ending.hint}"][
-            : 3 if result.ending.hint else 2
-        ]
-    failed = [check for check in result.checks if not check.passed]
+        lines += [_window(window, width) for window in windows]
+    for target, ending in endings.items():
+        if ending.problem:
+            name = f"{target}: " if target else ""
+            lines += ["", f"FAILED: {name}{ending.problem}", f"hint: {ending.hint}"][: 3 if ending.hint else 2]
+    failed = [check for check in checks if not check.passed]
     if failed:
         lines.append("")
         lines += [f"NOT HELD: {c.text}: {c.value:.4g} {c.unit}".rstrip() + f" (limit {c.limit:g})" for c in failed]
-    elif result.checks:
-        lines += ["", f"all {len(result.checks)} limits of the scenario hold"]
-    return "\n".join(lines)
+    elif checks:
+        lines += ["", f"all {len(checks)} limits of the scenario hold"]
+    return lines
 
 
 def _run(statistics: Statistics) -> list[tuple[str, str]]:
@@ -47,20 +68,35 @@ def _run(statistics: Statistics) -> list[tuple[str, str]]:
         rows.append(("lateness of cycles", f"{jitter}, {s.scheduler}"))
         rows.append(("real time", f"{s.duration:.3f} s"))
     else:
-        speed = s.duration / s.wall_time if s.wall_time > 0 else 0.0
-        rows.append(("simulated time", f"{s.duration:.3f} s"))
-        rows.append(("wall time", f"{s.wall_time:.3f} s ({speed:.0f} x real time)"))
-    counted = (
-        (s.clamped, "values clamped"),
-        (s.setpoints_dropped, "setpoints dropped"),
-        (s.setpoint_timeouts, "setpoint timeouts"),
-        (s.faults, "faults"),
-    )
-    if any(number for number, _ in counted):
-        rows.append(("events", ", ".join(f"{number} {text}" for number, text in counted if number)))
+        rows += _times(s.duration, s.wall_time)
+    if _counts(s):
+        rows.append(("events", _counts(s)))
     if not s.enabled:
-        rows.append(("at the end", f"disabled ({s.fault})"))
+        rows.append(("at the end", _end(s)))
     return rows
+
+
+def _times(duration: float, wall_time: float) -> list[tuple[str, str]]:
+    speed = duration / wall_time if wall_time > 0 else 0.0
+    return [
+        ("simulated time", f"{duration:.3f} s"),
+        ("wall time", f"{wall_time:.3f} s ({speed:.0f} x real time)"),
+    ]
+
+
+def _counts(state: Statistics | TargetState) -> str:
+    """The numbers of events that happened."""
+    counted = (
+        (state.clamped, "values clamped"),
+        (state.setpoints_dropped, "setpoints dropped"),
+        (state.setpoint_timeouts, "setpoint timeouts"),
+        (state.faults, "faults"),
+    )
+    return ", ".join(f"{number} {text}" for number, text in counted if number)
+
+
+def _end(state: Statistics | TargetState) -> str:
+    return "enabled" if state.enabled else f"disabled ({state.fault})"
 
 
 def _window(result: WindowResult, width: int) -> str:

@@ -58,19 +58,41 @@ class Check:
         return self.value <= self.limit
 
 
-def track(axis: Axis, profile: Profile, columns: Mapping[str, array[float]], reference: Reference | None) -> Tracking:
-    """The signals of ``axis`` from a trace.
+def track(
+    axis: Axis, profile: Profile | None, columns: Mapping[str, array[float]], reference: Reference | None
+) -> Tracking:
+    """The signals of ``axis`` from traces, at the control cycles of the target whose signal is the position.
 
-    The setpoint is the continuous profile, not the last value that was sent.
+    The setpoint is the continuous profile, not the last value that was sent.  It is a signal if ``profile`` is None.
     """
-    time = columns["time"]
-    setpoint = array("d", (profile.value(t) for t in time))
+    time = columns[time_of(axis.position)]
+    setpoint = _at(axis.setpoint, time, columns) if profile is None else array("d", (profile.value(t) for t in time))
     ideal: array[float] | None = None
     if reference is not None:
         begin = bisect_left(time, axis.homing.until) if axis.homing else 0
         ideal = array("d", [math.nan] * begin)
         ideal.extend(reference(axis.name, time[begin:], setpoint[begin:]))
-    return Tracking(axis, time, setpoint, columns[axis.position], ideal, columns[axis.duty] if axis.duty else None)
+    duty = _at(axis.duty, time, columns) if axis.duty else None
+    return Tracking(axis, time, setpoint, columns[axis.position], ideal, duty)
+
+
+def time_of(signal: str) -> str:
+    """The column with the times of ``signal``: each target of a system has a trace of its own.
+
+    >>> time_of("outputs.pwm"), time_of("leader/outputs.pwm")
+    ('time', 'leader/time')
+    """
+    target, slash, _ = signal.rpartition("/")
+    return f"{target}{slash}time"
+
+
+def _at(signal: str, time: Sequence[float], columns: Mapping[str, array[float]]) -> array[float]:
+    """The values of ``signal`` at the times ``time``: each is the newest one, or the first one before it."""
+    times, values = columns[time_of(signal)], columns[signal]
+    if times is time:
+        return values
+    newest = (bisect_right(times, t) - 1 for t in time)
+    return array("d", (values[max(at, 0)] if values else math.nan for at in newest))
 
 
 def evaluate(tracking: Tracking) -> list[WindowResult]:
@@ -120,16 +142,28 @@ def _rms(values: Sequence[float]) -> float:
 
 
 def write_tracking(trackings: Sequence[Tracking], path: Path) -> None:
-    """Writes a CSV file for spreadsheets: time, then setpoint, reference, position and duty of each axis."""
+    """Writes a CSV file for spreadsheets: time, then setpoint, reference, position and duty of each axis.
+
+    If targets of a system have cycles at different times, an axis has values at those of its target only.
+    """
     header = ["time"]
-    columns: list[Sequence[float]] = [trackings[0].time]
+    columns: list[Sequence[float]] = []
+    times = sorted({time for tracking in trackings for time in tracking.time})
     for tracking in trackings:
         signals = {"setpoint": tracking.setpoint, "reference": tracking.reference}
         for name, column in (signals | {"position": tracking.position, "duty": tracking.duty}).items():
             if column is not None:
                 header.append(f"{tracking.axis.name}_{name}")
-                columns.append(column)
+                columns.append(_spread(tracking.time, column, times))
     with path.open("w", encoding="utf-8", newline="\n") as file:
         file.write(",".join(header) + "\n")
-        for row in zip(*columns):
+        for row in zip(times, *columns):
             file.write(",".join("" if math.isnan(value) else repr(value) for value in row) + "\n")
+
+
+def _spread(own: Sequence[float], values: Sequence[float], times: Sequence[float]) -> Sequence[float]:
+    """``values``, which belong to the times ``own``, at all ``times``; NaN at the other ones."""
+    if len(own) == len(times):
+        return values
+    known = dict(zip(own, values))
+    return [known.get(time, math.nan) for time in times]

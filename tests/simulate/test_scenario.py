@@ -12,6 +12,7 @@ import pytest
 
 from epg.cli.report import format_diagnostics
 from epg.diagnostics import Diagnostics
+from epg.simulate.interface import check_names, interface_of
 from epg.simulate.load_scenario import load_scenario
 from epg.simulate.scenario import Scenario
 from epg.simulate.setpoints import setpoint_rows, write_setpoints
@@ -34,10 +35,14 @@ def load(folder: Path, text: str) -> Scenario:
 
 @pytest.mark.parametrize("name", sorted(path.stem for path in (HERE / "wrong").glob("*.yaml")))
 def test_wrong_scenario(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """``EPG_UPDATE_GOLDEN=1`` rewrites the expected texts."""
+    """A file ``.interface`` has the names of the program.  ``EPG_UPDATE_GOLDEN=1`` rewrites the expected texts."""
     monkeypatch.chdir(HERE / "wrong")
     diagnostics = Diagnostics()
-    assert load_scenario(Path(f"{name}.yaml"), diagnostics) is None
+    scenario, interface = load_scenario(Path(f"{name}.yaml"), diagnostics), Path(f"{name}.interface")
+    if interface.is_file():
+        assert scenario is not None, format_diagnostics(diagnostics)
+        check_names(scenario, interface_of(interface.read_text(encoding="utf-8")), diagnostics)
+    assert diagnostics.has_errors and (interface.is_file() or scenario is None)
     text = format_diagnostics(diagnostics)
     golden = HERE / "wrong" / f"{name}.txt"
     if os.environ.get("EPG_UPDATE_GOLDEN"):

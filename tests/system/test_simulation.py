@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import csv
+import json
 import shutil
 import struct
 import subprocess
@@ -12,6 +13,9 @@ from pathlib import Path
 
 import pytest
 
+from epg.cli.main import main
+from epg.diagnostics import UserError
+from epg.simulate import format_table, simulate, simulate_system
 from tests.cmake.project import ROOT, Project
 
 SYSTEM = """version: 1
@@ -42,6 +46,7 @@ LISTS = """cmake_minimum_required(VERSION 3.22)
 project(robots LANGUAGES C CXX)
 find_package(EPG REQUIRED)
 epg_add_system(robots SYSTEM robots.system.yaml)
+epg_add_simulation(judged EXECUTABLE robots SCENARIO follow.yaml OUTPUT judged)
 epg_add_target(alone TCF host_jiwy.tcf MODEL model BINDINGS jiwy.bindings.yaml
   PLANT plant PLANT_BINDINGS plant.bindings.yaml)
 epg_add_executable(alone_host EPG::alone)
@@ -52,6 +57,30 @@ SETPOINTS = """time,topic,value
 9,{tilt},-0.2
 """
 SECONDS = 10.0
+SCENARIO = """version: 1
+duration: 8 s
+setpoints:
+  leader/pan_subscriber: {profile: [{shape: move, start: 5 s, duration: 2 s, to: 0.5 rad}]}
+  leader/tilt_subscriber: {}
+events:
+  - {at: 0 s, enable: true, target: leader}
+  - {at: 0 s, enable: true, target: near}
+  - {at: 7.5 s, failure: hang, target: far_1}
+  - {at: 2 s, failure: die, target: drive}
+  - {at: 3 s, failure: restart, target: drive}
+  - {at: 5.5 s, lost: 0.2 s}
+ends: {far_2: never_enabled, drive: never_enabled}
+axes:
+  leader:
+    setpoint: leader/pan_subscriber
+    position: leader/plant.outputs.angle_pan
+    duty: near/outputs.pwm_pan
+    windows: [{from: 5 s, until: 8 s, rms: 0.05 rad}]
+  near:
+    setpoint: leader/outputs.pan_logging
+    position: near/inputs.setpoint_pan
+    windows: [{from: 5 s, until: 8 s, largest: 0.1 rad}]
+"""
 
 
 def project_in(folder: Path) -> Project:
@@ -63,6 +92,7 @@ def project_in(folder: Path) -> Project:
         shutil.copy(jiwy / name, project.source)
     shutil.copytree(ROOT / "examples/relbot", project.source / "relbot")
     (project.source / "robots.system.yaml").write_text(SYSTEM)
+    (project.source / "follow.yaml").write_text(SCENARIO)
     (project.source / "CMakeLists.txt").write_text(LISTS)
     return project
 
@@ -245,3 +275,93 @@ def test_lost_messages_are_lost_or_late(files: Path) -> None:
     assert got["tilt"] == sent_values["tilt"][: len(got["tilt"])] and len(got["tilt"]) > 50
     late = [at - time for (time, _), (at, _) in zip(messages, received(files, "far_1", "tilt"), strict=False)]
     assert min(late) < 0.0021 and max(late) > 0.003, "a lost message of a reliable topic comes again"
+
+
+# Scenarios -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def judged(built: Project) -> Path:
+    """The folder of a run through the scenario, by CMake."""
+    assert "all 2 limits of the scenario hold" in built.build("--target", "judged")
+    return built.build_folder / "judged"
+
+
+def test_an_axis_is_judged_at_the_cycles_of_its_target(judged: Path) -> None:
+    """The setpoint of the second axis is the newest value of a signal of another target, by another clock."""
+    leader, near = rows(judged / "traces/leader.csv"), rows(judged / "traces/near.csv")
+    times = [float(row["time"]) for row in leader]
+    tracking = [row for row in rows(judged / "tracking.csv") if row["near_position"]]
+    assert len(tracking) == len(near) and len(rows(judged / "tracking.csv")) > len(near)
+    for row, own in zip(tracking, near, strict=True):
+        newest = max(0, bisect_left(times, float(row["time"]) + 1e-12) - 1)
+        assert row["time"] == own["time"] and float(row["near_position"]) == float(own["inputs.setpoint_pan"])
+        assert float(row["near_setpoint"]) == float(leader[newest]["outputs.pan_logging"])
+    assert {row["leader_duty"] for row in rows(judged / "tracking.csv")} == {
+        "",  # this target had no cycle at this time
+        *(repr(float(row["outputs.pwm_pan"])) for row in near),
+    }
+
+
+def test_the_events_of_a_scenario(judged: Path) -> None:
+    states = json.loads((judged / "statistics.json").read_text())["targets"]
+    assert {name: state["state"] for name, state in states.items() if state["state"] != "runs"} == {"far_1": "hangs"}
+    assert [state["enabled"] for state in states.values()] == [True, True, False, False, False]
+    assert float(rows(judged / "traces/far_1.csv")[-1]["time"]) < 7.5
+    assert states["drive"]["cycles"] == 5000, "since its restart"
+    setpoints = [
+        float(row["time"]) for row in rows(judged / "setpoints.csv") if row["topic"].endswith("pan_subscriber")
+    ]
+    assert not [time for time in setpoints if 5.5 <= time < 5.7] and len(setpoints) == 243 - 6
+
+
+def test_a_system_that_does_not_do_what_its_scenario_expects(built: Project, judged: Path, tmp_path: Path) -> None:
+    text = SCENARIO.replace("{far_2: never_enabled", "{far_1: enabled").replace("rms: 0.05 rad", "rms: 0.001 rad")
+    (tmp_path / "follow.yaml").write_text(text)
+    result = simulate_system(built.build_folder / "robots", tmp_path / "follow.yaml", tmp_path / "out")
+    table = format_table(result)
+    assert not result.passed
+    assert "FAILED: far_1: the target did not run at the end" in table
+    assert "FAILED: far_2: the target was never enabled" in table
+    assert "NOT HELD: leader: RMS error from 5 s to 8 s" in table
+    for name in ("traces/leader.csv", "traces/far_2.csv", "topics.csv", "setpoints.csv", "statistics.json"):
+        assert (tmp_path / "out" / name).read_bytes() == (judged / name).read_bytes(), "equal runs"
+
+
+def test_only_simulated_time(built: Project, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    program, scenario = built.build_folder / "robots", built.source / "follow.yaml"
+    assert main(["simulate", str(program), "--scenario", str(scenario), "--output", str(tmp_path), "--realtime"]) == 1
+    assert "a system is simulated in simulated time only [needs-one-target]" in capsys.readouterr().err
+    with pytest.raises(UserError):
+        simulate(program, scenario, tmp_path)
+
+
+def block(page: str, name: str) -> str:
+    """The YAML of a page after the comment ``name``."""
+    text = (ROOT / "docs" / page).read_text(encoding="utf-8")
+    return text.partition(f"<!-- {name} -->")[2].partition("```yaml\n")[2].partition("```")[0]
+
+
+def test_the_pages_system_and_scenario(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The file of the system is built by ``epg simulate``, and a mistake of the build is reported."""
+    for name in ("model", "plant"):
+        shutil.copytree(ROOT / "examples/jiwy" / name, tmp_path / name)
+    for name in ("jiwy.bindings.yaml", "plant.bindings.yaml"):
+        shutil.copy(ROOT / "examples/jiwy" / name, tmp_path)
+    bindings = "bindings: jiwy.bindings.yaml"
+    system = block("systems.md", "two jiwys")
+    assert system.count(bindings) == 2
+    with_plant = system.replace(bindings, f"{bindings}, plant: plant, plant_bindings: plant.bindings.yaml")
+    (tmp_path / "two_jiwys.system.yaml").write_text(with_plant)
+    (tmp_path / "follow.yaml").write_text(block("simulation.md", "scenario of two jiwys"))
+    command = ["simulate", str(tmp_path / "two_jiwys.system.yaml"), "--scenario", str(tmp_path / "follow.yaml")]
+    command += ["--output", str(tmp_path / "results")]
+    assert main([*command, "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data["passed"] and len(data["checks"]) == 2
+    assert {name: state["cycles"] for name, state in data["targets"].items()} == {"leader": 18000, "follower": 5000}
+    assert all((tmp_path / "results" / file).is_file() for file in data["files"])
+    model = tmp_path / "model/xxmodel.c"
+    model.write_text(model.read_text() + "\n#error not today\n")
+    assert main(command) == 1
+    assert f"{model.name}:" in (told := capsys.readouterr().err) and "not today" in told

@@ -10,7 +10,7 @@ function(_epg_simulator_library)
   set(host "${here}/../host")
   file(GLOB sources CONFIGURE_DEPENDS "${here}/simulator/*.c")
   add_library(epg_simulator STATIC EXCLUDE_FROM_ALL ${sources}
-    "${host}/src/number.c" "${host}/src/setpoints.c" "${host}/src/trace.c")
+    "${host}/src/interface.c" "${host}/src/number.c" "${host}/src/setpoints.c" "${host}/src/trace.c")
   target_include_directories(epg_simulator PUBLIC "${here}/include" "${host}/include")
   target_link_libraries(epg_simulator PUBLIC epg_runtime ${CMAKE_DL_LIBS} m)
   target_compile_definitions(epg_simulator PRIVATE _POSIX_C_SOURCE=200809L)

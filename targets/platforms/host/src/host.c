@@ -8,6 +8,7 @@
 #include <signal.h>
 
 #include "files.h"
+#include "interface.h"
 #include "options.h"
 #include "report.h"
 #include "ros.h"

@@ -31,28 +31,6 @@ static epg_statistics_t counts(const epg_host_run_t *run)
     return statistics;
 }
 
-/* Names -------------------------------------------------------------------------------------------------------- */
-
-void epg_host_print_interface(const epg_host_target_t *host)
-{
-    const epg_target_t *target = host->target;
-    for (size_t i = 0; i < target->subscription_count; i++) {
-        const epg_topic_t *subscription = &target->subscriptions[i];
-        for (size_t k = 0; k < subscription->count; k++) {
-            printf("topic,%s\n", epg_topic_value_name(subscription, k));
-        }
-    }
-    for (size_t i = 0; i < host->input_count; i++) {
-        printf("input,%s\n", host->inputs[i].name);
-    }
-    for (size_t i = 0; i < target->component_count; i++) {
-        printf("component,%s\n", target->components[i]);
-    }
-    for (size_t i = 0; i < host->signal_count; i++) {
-        printf("signal,%s\n", host->signals[i].name);
-    }
-}
-
 /* JSON --------------------------------------------------------------------------------------------------------- */
 
 /** Writes `value`, which has no quotes and no backslashes: it is a word of the program or a name. */

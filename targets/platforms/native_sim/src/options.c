@@ -11,8 +11,8 @@
 #include <posix_native_task.h>
 #include <zephyr/kernel.h>
 
+#include "interface.h"
 #include "parts.h"
-#include "report.h"
 #include "serial.h"
 #include "setpoints.h"
 #include "store.h"

@@ -10,6 +10,7 @@
 
 #include "../../host/src/number.h"
 #include "failures.h"
+#include "report.h"
 #include "simulate.h"
 
 enum { DONE = 0, FAILED = 1, WRONG_OPTIONS = 2 };
@@ -17,9 +18,10 @@ enum { DONE = 0, FAILED = 1, WRONG_OPTIONS = 2 };
 typedef struct options {
     uint64_t duration_ns;
     uint64_t seed;
-    const char *trace;  /* folder */
-    const char *topics; /* file */
-    char folder[4096];  /* of the program */
+    const char *trace;      /* folder */
+    const char *topics;     /* file */
+    const char *statistics; /* file */
+    char folder[4096];      /* of the program */
 } options_t;
 
 static int usage(const epg_system_t *system, const char *problem, const char *word)
@@ -35,7 +37,9 @@ static int usage(const epg_system_t *system, const char *problem, const char *wo
             "  --setpoints TARGET=FILE     reads setpoints of a target from a CSV file with rows time,topic,value\n"
             "  --events FILE               reads failures of targets from a CSV file with rows time,target,event\n"
             "  --trace FOLDER              writes all signals into FOLDER/TARGET.csv, one row per control cycle\n"
-            "  --topics FILE               writes all published values\n",
+            "  --topics FILE               writes all published values\n"
+            "  --statistics FILE           writes the states of the targets at the end, as JSON\n"
+            "  --interface                 prints the names of targets, topics and signals, for programs\n",
             system->name);
     return WRONG_OPTIONS;
 }
@@ -74,6 +78,10 @@ static int take(simulation_t *simulation, options_t *options, const char *option
     }
     if (strcmp(option, "--topics") == 0) {
         options->topics = value;
+        return DONE;
+    }
+    if (strcmp(option, "--statistics") == 0) {
+        options->statistics = value;
         return DONE;
     }
     if (strcmp(option, "--setpoints") == 0) {
@@ -115,6 +123,19 @@ static void print_state(const member_t *member)
            of_component ? " (" : "", of_component ? component : "", of_component ? ")" : "");
 }
 
+static bool write_statistics(const simulation_t *simulation, const char *path)
+{
+    FILE *file = fopen(path, "wb");
+    if (file != NULL) {
+        report_statistics(simulation, file);
+    }
+    if (file == NULL || fclose(file) != 0) {
+        fprintf(stderr, "%s: error: cannot write this file\n", path);
+        return false;
+    }
+    return true;
+}
+
 static int run(simulation_t *simulation, options_t *options, int argc, char **argv)
 {
     const epg_system_t *system = simulation->system;
@@ -122,6 +143,10 @@ static int run(simulation_t *simulation, options_t *options, int argc, char **ar
         if (!member_open(&simulation->members[i], &system->targets[i], options->folder)) {
             return FAILED;
         }
+    }
+    if (argc == 2 && strcmp(argv[1], "--interface") == 0) {
+        report_interface(simulation);
+        return DONE;
     }
     for (int i = 1; i < argc; i += 2) {
         const int status = i + 1 < argc ? take(simulation, options, argv[i], argv[i + 1])
@@ -154,7 +179,7 @@ static int run(simulation_t *simulation, options_t *options, int argc, char **ar
     for (size_t i = 0; i < system->target_count; i++) {
         print_state(&simulation->members[i]);
     }
-    return DONE;
+    return options->statistics == NULL || write_statistics(simulation, options->statistics) ? DONE : FAILED;
 }
 
 int epg_system_main(const epg_system_t *system, int argc, char **argv)
