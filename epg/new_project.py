@@ -21,7 +21,7 @@ from epg.catalog.middleware import Middleware
 from epg.check.communication import CONSOLE
 from epg.check.configuration import Configuration
 from epg.check.editor import USER_FILES, editor_schema
-from epg.check.middleware import needs_component, offered, unoffered_hint
+from epg.check.middleware import first_middleware, needs_component, offered, unoffered_hint
 from epg.check.names import identifier_problem, project_folder_problem
 from epg.check.target_names import check_name, check_sdk_headers
 from epg.data import data_folder, targets_roots
@@ -214,9 +214,7 @@ def _choose_middleware(
         return wanted
     if configuration is not None and configuration.communication.middleware.builds:
         return ""
-    own = target.platform.middlewares
-    good = [name for name in own if (found := catalog.find_middleware(name)) is not None and found.builds]
-    return next((name for name in good if name != "none"), "none")
+    return first_middleware(target, catalog)
 
 
 def _model_files(request: ProjectRequest, model: Model, diagnostics: Diagnostics) -> tuple[str, dict[str, bytes]]:

@@ -49,6 +49,7 @@ class KindPort:
     ``drive``: the value drives a motor.  The macro ``applied`` of the kind's template gives the present duty.
     ``boolean_with``: the port is boolean if the component's parameters have these values; else it has ``type``.
     ``integer_with``: the port gives whole numbers if the parameters have these values, so integer inputs can take it.
+    ``words``: words in the names of model ports that belong to such a port (:mod:`epg.resolve.matching`).
     ``each``: the parameter with a list of names, or with a message; a component has one such port for each name, or for
     each number of the message.  A component's own kind (:meth:`Kind.of_component`) has a port for each ``element``
     instead, and ``part`` is the name of the port in the original kind.
@@ -67,6 +68,7 @@ class KindPort:
     part: str = ""
     boolean_with: Mapping[str, str] = field(default_factory=dict)
     integer_with: Mapping[str, str] = field(default_factory=dict)
+    words: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

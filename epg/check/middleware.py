@@ -30,6 +30,13 @@ def _supports(middleware: Middleware, target: Target) -> bool:
     return family is None or not middleware.families or family.name in middleware.families
 
 
+def first_middleware(target: Target, catalog: Catalog) -> str:
+    """The name of the first middleware of the platform that can be built; "none" if there is no other."""
+    found = (catalog.find_middleware(name) for name in target.platform.middlewares)
+    good = (middleware.name for middleware in found if middleware is not None and middleware.builds)
+    return next((name for name in good if name != "none"), "none")
+
+
 def unoffered_hint(name: str, possible: Iterable[str], catalog: Catalog) -> str:
     """The hint for a middleware ``name`` that is not among the ``possible`` ones of a target."""
     middleware = catalog.find_middleware(name) if name in catalog.names("middleware") else None

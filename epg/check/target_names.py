@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
+from epg.catalog.catalog import Catalog
 from epg.catalog.hardware import Target
 from epg.check.configuration import Configuration
 from epg.check.names import (
@@ -48,6 +49,15 @@ def check_sdk_headers(name: str, target: Target, span: Span, diagnostics: Diagno
     for header in sorted(_generated_headers(name).intersection(target.platform.headers)):
         message = f"target '{name}' would generate a header '{header}', which hides one that {target.name} needs"
         diagnostics.error("invalid-name", span, message, hint=f"choose another name, such as {name}_robot")
+
+
+def proposed_name(name: str, catalog: Catalog) -> str:
+    """``name``, or ``<name>_robot`` if EPG refuses ``name`` for some targets because of a header or a library."""
+    targets = (catalog.find_target(target) for target in catalog.target_names())
+    hidden = frozenset(header for target in targets if target is not None for header in target.platform.headers)
+    problems = Diagnostics()
+    check_name(name, Span.of_argument(name), problems)
+    return f"{name}_robot" if problems.error_count or not hidden.isdisjoint(_generated_headers(name)) else name
 
 
 def _generated_headers(name: str) -> set[str]:

@@ -49,6 +49,14 @@ def names(body: Body, key: str, default: Sequence[str]) -> list[str]:
     return list(dict.fromkeys(value))
 
 
+def bodies(body: Body, key: str) -> list[Body]:
+    """The list of objects of ``key``, at most 64."""
+    value = body.get(key)
+    if not isinstance(value, list) or len(value) > _MOST_ENDS or not all(isinstance(each, Mapping) for each in value):
+        raise Refused(f"'{key}' must be a list of objects")
+    return value
+
+
 def ends(body: Body) -> tuple[End, ...]:
     """The ends of a wire, at most 64."""
     value = body.get("ends")

@@ -16,7 +16,9 @@ from typing import Any
 
 from epg.bootstrap import cache_folder
 from epg.catalog.catalog import Catalog, Target, load_catalog
+from epg.check.communication import tools_for
 from epg.check.configuration import Configuration
+from epg.check.middleware import first_middleware
 from epg.diagnostics import Diagnostics
 from epg.documents.tcf import load_tcf_chain, predefined_tcf_names
 from epg.emit.project_files import project_folder
@@ -61,13 +63,17 @@ class Configurations:
     def prepare(self) -> None:
         """Reads all choices, and looks for the tools of all targets."""
         for choice in self.choices:
-            self._missing(choice.target)
+            self._missing(choice)
         self._ready.set()
+
+    @cached_property
+    def catalog(self) -> Catalog:
+        return load_catalog(self._roots, Diagnostics())
 
     @cached_property
     def choices(self) -> tuple[Choice, ...]:
         """Predefined configurations first, then targets, each by name."""
-        catalog = load_catalog(self._roots, Diagnostics())
+        catalog = self.catalog
         found = [self._predefined(name, catalog) for name in predefined_tcf_names(self._roots)]
         bare = [
             Choice(name, "", target, None, "")
@@ -115,7 +121,7 @@ class Configurations:
                     "chosen": project is not None and choice.name == project.chosen,
                     "possible": not reason,
                     "reason": reason,
-                    "missing": self._missing(choice.target),
+                    "missing": self._missing(choice),
                     "components": len(components),
                     "matches": matches,
                     "ports": len(ports),
@@ -131,7 +137,7 @@ class Configurations:
         key = (choice.name, tuple((port.name, port.direction) for port in (*model.inputs, *model.outputs)))
         if key not in self._counts:
             found = match_ports(model, choice.configuration.components)
-            self._counts[key] = sum(match.reference is not None for match in found.values())
+            self._counts[key] = sum(match.proposal is not None for match in found.values())
         return self._counts[key]
 
     def _predefined(self, file: str, catalog: Catalog) -> Choice | None:
@@ -157,8 +163,14 @@ class Configurations:
         tools = load_tools(self._roots, Diagnostics())
         return {name: tool.title for name, tool in tools.items() if find_tool(tool, where).status != "found"}
 
-    def _missing(self, target: Target) -> list[str]:
-        return [self._lacking[name] for name in target.platform.needs if name in self._lacking]
+    def _missing(self, choice: Choice) -> list[str]:
+        """The titles of the tools that are missing for a build of ``choice``, those of its middleware among them."""
+        if choice.configuration is not None:
+            needed = tools_for(choice.target, choice.configuration.communication)
+        else:
+            middleware = self.catalog.find_middleware(first_middleware(choice.target, self.catalog))
+            needed = {*choice.target.needs, *(middleware.needs if middleware is not None else ())}
+        return [self._lacking[name] for name in sorted(needed) if name in self._lacking]
 
 
 @dataclass(frozen=True)

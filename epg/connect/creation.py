@@ -7,14 +7,19 @@ import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from epg.catalog.catalog import Catalog
+from epg.check.target_names import proposed_name
 from epg.connect.body import Refused, text
 from epg.connect.projects import Job, find_jobs
 from epg.diagnostics import Diagnostics, UserError
 from epg.new_project import ProjectRequest, project_name, write_project
 
 
-def proposal(model: Path) -> dict[str, str]:
-    """A folder and a name for a new project for ``model``.  The folder is beside the model's and does not exist yet."""
+def proposal(model: Path, catalog: Catalog) -> dict[str, str]:
+    """A folder and a name for a new project for ``model``.
+
+    The folder is beside the model's and does not exist yet.  The name is one that every target of ``catalog`` can have.
+    """
     around = model.resolve()
     around = around if around.is_dir() else around.parent
     words = [around.name.removesuffix(end) for end in ("_export", "-export") if around.name.endswith(end)]
@@ -22,7 +27,7 @@ def proposal(model: Path) -> dict[str, str]:
     folder, number = around.with_name(name), 2
     while os.path.lexists(folder):
         folder, number = around.with_name(f"{name}_{number}"), number + 1
-    return {"folder": str(folder), "name": project_name(folder)}
+    return {"folder": str(folder), "name": proposed_name(project_name(folder), catalog)}
 
 
 def create(body: Mapping[str, object], model: Path, user_roots: Sequence[Path]) -> list[Job]:

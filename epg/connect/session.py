@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import epg
-from epg.connect.body import Body, Refused, boolean, ends, names, text
+from epg.connect.body import Body, Refused, bodies, boolean, ends, names, text
 from epg.connect.configurations import Configurations
 from epg.connect.creation import create
 from epg.connect.draft import SetEnds, SetExtends
@@ -62,11 +62,12 @@ class Session:
         self._outdated = False
         self._user_roots = tuple(user_roots or (jobs[0].request.user_roots if jobs else ()))
         self._configurations = Configurations(self._user_roots)
-        self._start = Start(model) if model is not None and not jobs else None
+        self._start = Start(model, self._configurations.catalog) if model is not None and not jobs else None
         self._editor = Editor(jobs[0]) if jobs else None
         self.runs = Runs(self._bump)
         self._actions: dict[str, Callable[[Body], None]] = {
             "connect": self._connect,
+            "rewire": self._rewire,
             "disconnect": self._disconnect,
             "accept": self._accept,
             "undo": lambda body: self._opened().undo(),
@@ -161,11 +162,24 @@ class Session:
     # actions of the user
 
     def _connect(self, body: Body) -> None:
+        self._opened().edit((self._wires(body),))
+
+    def _rewire(self, body: Body) -> None:
+        """Changes the wires of several ports in one step.  "ends" of null removes a port from the bindings."""
+        changes = bodies(body, "changes")
+        self._opened().edit(
+            tuple(
+                SetEnds(text(change, "port"), None) if change.get("ends") is None else self._wires(change)
+                for change in changes
+            )
+        )
+
+    def _wires(self, body: Body) -> SetEnds:
         port, wires = text(body, "port"), ends(body)
         model = self._opened().loaded.parts.model
         if model is not None and len(wires) != 1 and port in [p.name for p in model.inputs]:
             raise Refused(f"input '{port}' must be bound to one component", "to remove its wire, disconnect it")
-        self._opened().edit((SetEnds(port, wires),))
+        return SetEnds(port, wires)
 
     def _disconnect(self, body: Body) -> None:
         self._opened().edit((SetEnds(text(body, "port"), None),))

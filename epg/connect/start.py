@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from epg.catalog.catalog import Catalog
 from epg.connect.creation import proposal
 from epg.connect.files import Watch
 from epg.connect.loaded import files_of_model
@@ -17,9 +18,9 @@ from epg.models import load_model
 class Start:
     """The model at ``path``.  It is read again when its files change."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, catalog: Catalog) -> None:
         self.path = path
-        self._create = proposal(path)
+        self._create = proposal(path, catalog)
         self._load()
 
     def look(self) -> bool:

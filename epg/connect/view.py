@@ -21,7 +21,7 @@ from epg.emit.hardware import hardware_rows
 from epg.graph.application import conversion
 from epg.graph.wiring import wire_texts
 from epg.models.model import Model, Port
-from epg.quantity import normal_unit
+from epg.quantity import UNITS, normal_unit
 from epg.resolve.application import Step
 from epg.resolve.claims import TICK
 from epg.resolve.matching import Match
@@ -40,25 +40,31 @@ def view_of(loaded: Loaded) -> Data:
         "components": _components(configuration, loaded) if configuration is not None else [],
         "wires": wires,
         "proposals": {
-            name: match.reference
+            name: match.proposal
             for name, match in loaded.matches.items()
             if name not in wires
-            and match.reference is not None
-            and (match.port.direction == "input" or match.reference not in taken)
+            and match.proposal is not None
+            and (match.port.direction == "input" or match.proposal not in taken)
         },
         "candidates": {name: list(match.candidates) for name, match in loaded.matches.items()},
         "fits": {name: _fitting(match, loaded) for name, match in loaded.matches.items()},
         "diagnostics": [diagnostic_view(diagnostic, loaded.places) for diagnostic in loaded.diagnostics],
         "hardware": _hardware(loaded),
+        "units": {unit: [dimension, float(factor)] for unit, (dimension, factor) in UNITS.items()},
         "pictures": pictures(loaded),
     }
 
 
 def pictures(loaded: Loaded) -> dict[str, bool]:
-    """For each picture: True if it can be drawn."""
+    """The pictures of this target: True for those that can be drawn, False for those that errors prevent.
+
+    A board without a layout has no pinout.
+    """
     configuration, whole = loaded.parts.configuration, loaded.parts.application is not None
-    drawn = configuration is not None and configuration.target.board.layout is not None and bool(loaded.hardware)
-    return {"wiring": drawn, "application": whole, "schedule": whole}
+    shown = {"application": whole, "schedule": whole}
+    if configuration is not None and configuration.target.board.layout is None:
+        return shown
+    return {"wiring": configuration is not None and bool(loaded.hardware), **shown}
 
 
 def model_view(model: Model) -> Data:
@@ -121,10 +127,14 @@ def _wires(loaded: Loaded) -> dict[str, list[Data]]:
 
 
 def _wire(end: End, name: str, direction: str, loaded: Loaded) -> Data:
-    """One end of a wire: its conversion in the bindings, and in ``from_tcf`` the conversion of its component."""
+    """One end of a wire: its conversion in the bindings, and in ``from_tcf`` the conversion of its component.
+
+    The units are those on both sides of the conversion in the bindings; empty if they are not known.
+    """
     found = _end(end.reference, direction, loaded.parts.configuration)
     own = _said(end)
     given = ""
+    unit = wanted = ""
     if found is not None:
         component, port = found
         steps, unit = component_steps(component, port)
@@ -135,7 +145,7 @@ def _wire(end: End, name: str, direction: str, loaded: Loaded) -> Data:
         if not end.scale and unit and wanted and unit != wanted:
             between = f"{unit} → {wanted}" if direction == "source" else f"{wanted} → {unit}"
             own = " ".join(part for part in (between, own) if part)
-    return {**asdict(end), "text": own, "from_tcf": given}
+    return {**asdict(end), "text": own, "from_tcf": given, "component_unit": unit, "model_unit": wanted}
 
 
 def _fitting(match: Match, loaded: Loaded) -> list[str]:
@@ -169,10 +179,16 @@ def _units(steps: list[Step]) -> str:
 
 
 def diagnostic_view(diagnostic: Diagnostic, places: Places | None = None) -> Data:
-    """A message as in the command line's JSON, with the port and the component that it is about."""
+    """A message as in the command line's JSON, with the port and the component that it is about.
+
+    ``ports`` are that port and the others that it names: the two outputs that drive one component port.
+    """
+    port = places.port(diagnostic) if places is not None else None
+    others = [places.port_at(note.span) for note in diagnostic.notes] if places is not None else []
     return {
         **diagnostic.data(),
-        "port": places.port(diagnostic) if places is not None else None,
+        "port": port,
+        "ports": list(dict.fromkeys(name for name in (port, *others) if name is not None)),
         "component": places.component(diagnostic) if places is not None else None,
     }
 

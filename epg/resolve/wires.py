@@ -101,9 +101,22 @@ class Wiring:
                     notes, hint = [Note("bound here", first[1])], "remove one of the two"
                     self.diagnostics.error("bound-twice", binding.span, message, hint=hint, notes=notes)
                 steps = self._steps(port, binding, component, component_port)
+                self._check_share(port, binding, component, component_port)
                 unit = _unit_at(port, binding, component, component_port)
                 wires.append(Wire(port, component, component_port, steps, unit, binding.span))
         return tuple(wires)
+
+    def _check_share(self, port: Port, binding: Binding, component: Component, component_port: KindPort) -> None:
+        """Warns of a value with a unit, such as an angle or a voltage, that becomes the duty of a motor as it is."""
+        unit = binding.conversion.unit if binding.conversion.unit is not None else port.unit
+        if binding.conversion.scale is not None or not is_share_with_unit(unit, component, component_port):
+            return
+        message = (
+            f"'{component.name}.{component_port.name}' is a share of the supply voltage from -1 to 1, "
+            f"but '{port.name}' has the unit {normal_unit(unit)}"
+        )
+        hint = "set 'scale' in the binding, bind another port, or correct the unit of the model's port"
+        self.diagnostics.warning("unit-of-duty", binding.span, message, hint=hint)
 
     def _section(self, key: str) -> Span:
         root = self.bindings.root
@@ -223,6 +236,11 @@ def component_steps(component: Component, port: KindPort) -> tuple[list[Step], s
         steps.append(Step(scale=conversion_factor(unit, given), reason=f"{unit} -> {given}"))
     steps += _stated_step(conversion, f"components.{component.name}")
     return steps, given or ("" if conversion.scale is not None else unit)
+
+
+def is_share_with_unit(unit: str, component: Component, port: KindPort) -> bool:
+    """True if a value with a unit is given to a port that takes a share, from -1 to 1, without a conversion."""
+    return port.drive and bool(normal_unit(unit)) and not component_steps(component, port)[0]
 
 
 def _unit_at(port: Port, binding: Binding, component: Component, component_port: KindPort) -> str:

@@ -39,6 +39,8 @@ def test_a_port_is_connected_and_saved(page: Page, bindings: Path) -> None:
             "unit": "",
             "text": "×1/4 +0.5 in -1…1",
             "from_tcf": "",
+            "component_unit": "rad",
+            "model_unit": "rad",
         }
     ]
     assert state["draft"]["changed"] and state["draft"]["can_undo"] and not state["draft"]["can_redo"]

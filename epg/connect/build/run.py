@@ -14,7 +14,8 @@ from collections.abc import Callable
 from typing import Any
 
 from epg.catalog.catalog import load_catalog
-from epg.catalog.hardware import Target
+from epg.check.communication import tools_for
+from epg.check.configuration import Configuration
 from epg.connect.build.messages import Message, Messages, plain
 from epg.connect.build.plan import make_plan
 from epg.connect.build.process import Process
@@ -120,7 +121,8 @@ class Build:
 
     def _build(self, job: Job) -> tuple[str, list[Message], list[Made]]:
         request = job.request
-        target = _target(request)
+        configuration = _configuration(request)
+        target = configuration.target if configuration is not None else None
         plan = make_plan(job, target)
         if plan.missing:
             return "failed", list(plan.missing), []
@@ -134,9 +136,10 @@ class Build:
                 return "cancelled", messages.finish(failed=False), []
             if status != 0:
                 found = messages.finish(failed=True)
-                if step.name == "configure" and target is not None:
+                if step.name == "configure" and configuration is not None:
                     said = " ".join(message.message for message in found)
-                    needed = find_tools(target.platform.needs, request.roots, plan.cache)
+                    names = sorted(tools_for(configuration.target, configuration.communication))
+                    needed = find_tools(names, request.roots, plan.cache)
                     lacking = missing_tools(needed, request.roots, plan.cache)
                     found += [message for title, message in lacking.items() if title not in said]
                 return "failed", found, []
@@ -173,8 +176,7 @@ class Build:
             self._changed()
 
 
-def _target(request: Request) -> Target | None:
-    """Board and platform; None if the configuration has an error, which the build reports."""
+def _configuration(request: Request) -> Configuration | None:
+    """The target's configuration; None if it has an error, which the build reports."""
     diagnostics = Diagnostics()
-    configuration = load_configuration(request, load_catalog(request.roots, diagnostics), diagnostics)
-    return configuration.target if configuration is not None else None
+    return load_configuration(request, load_catalog(request.roots, diagnostics), diagnostics)

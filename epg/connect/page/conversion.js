@@ -14,6 +14,7 @@ export function editConversion(port, n) {
   const { reference } = endsOf(current(), port)[n];
   const [from, to] = found.side === "inputs" ? [reference, port] : [port, reference];
   let error = null;
+  let typed = null; // what the fields contain; null before the first change
 
   const apply = async (event) => {
     event.preventDefault();
@@ -48,7 +49,16 @@ export function editConversion(port, n) {
       textField(`conversion-${name}`, label, { name, initial, readonly, autofocus: name === "scale" }, hint);
     return h(
       "form",
-      { onsubmit: apply, autocomplete: "off", novalidate: true },
+      {
+        onsubmit: apply,
+        autocomplete: "off",
+        novalidate: true,
+        oninput: (event) => {
+          const elements = [...event.currentTarget.elements].filter((each) => each.name);
+          typed = Object.fromEntries(elements.map((each) => [each.name, each.value.trim()]));
+          draw();
+        },
+      },
       h(
         "p.muted",
         "The value is multiplied by the scale, the offset is added, and the result is kept within the limits. ",
@@ -63,6 +73,7 @@ export function editConversion(port, n) {
         field("high", "Highest", end.limits?.[1]),
         field("unit", "Unit", end.unit, "unit of the value in the model, if it differs from the port's unit"),
       ),
+      h("p.preview", { role: "status" }, preview(found, end, typed || fieldsOf(end))),
       error && h("p.refusal", { role: "alert" }, error.message, error.hint ? h("span.hint", error.hint) : null),
       h(
         "div.buttons",
@@ -85,6 +96,38 @@ export function editConversion(port, n) {
       ),
     );
   });
+}
+
+const fieldsOf = ({ scale, offset, limits, unit }) => ({
+  scale: scale || "",
+  offset: offset || "",
+  low: limits?.[0] || "",
+  high: limits?.[1] || "",
+  unit: unit || "",
+});
+
+// Two values before and after the conversion in the fields, with their units: "0 deg → 0 rad, 1 deg → 0.0174533 rad".
+function preview({ side, port }, end, { scale, offset, low, high, unit }) {
+  const modelUnit = unit || end.model_unit || port.unit;
+  const { component_unit: componentUnit } = end;
+  const [before, after] = side === "inputs" ? [componentUnit, modelUnit] : [modelUnit, componentUnit];
+  const units = current().units;
+  const known = units[before] && units[after] && units[before][0] === units[after][0];
+  const factor = !scale && before && after && known ? units[before][1] / units[after][1] : 1;
+  const numbers = [scale || "1", offset || "0", low || "-Infinity", high || "Infinity"].map(number);
+  if (numbers.some(Number.isNaN)) return "";
+  const [scaled, shifted, lowest, highest] = numbers;
+  const limit = (value) => Math.min(Math.max(value, lowest), highest);
+  const convert = (value) =>
+    side === "inputs" ? limit(value * factor * scaled + shifted) : limit(value * scaled + shifted) * factor;
+  const shown = (value, unitOfIt) => [Number(value.toPrecision(6)), unitOfIt].filter((part) => part !== "").join(" ");
+  return [0, 1].map((value) => `${shown(value, before)} → ${shown(convert(value), after)}`).join(", ");
+}
+
+// A number as the bindings write it: "0.5", or a ratio such as "361/5625".
+function number(text) {
+  const parts = text.split("/").map((part) => (part.trim() === "" ? NaN : Number(part)));
+  return parts.length === 2 ? parts[0] / parts[1] : parts.length === 1 ? parts[0] : NaN;
 }
 
 const errorsOf = (port) => current().diagnostics.filter((each) => each.port === port && isError(each));

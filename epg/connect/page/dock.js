@@ -16,9 +16,9 @@ function tabs(state) {
     { name: "problems", title: `Problems${diagnostics.length ? ` ${diagnostics.length}` : ""}`, content: problemList },
     { name: "build", title: buildTitle(state), content: buildPanel },
     { name: "hardware", title: "Pins and peripherals", content: hardware },
-    pictures.wiring && { name: "wiring", title: "Pinout", content: picture },
-    pictures.application && { name: "application", title: "Application", content: picture },
-    pictures.schedule && { name: "schedule", title: "Schedule", content: picture },
+    "wiring" in pictures && { name: "wiring", title: "Pinout", content: picture },
+    { name: "application", title: "Application", content: picture },
+    { name: "schedule", title: "Schedule", content: picture },
     { name: "changes", title: state.draft.diff ? "Changes ●" : "Changes", content: changes },
   ].filter(Boolean);
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drawing wires with a pointer: it is pressed on a handle, and released on a port of the other side.
+// Drawing and moving wires with a pointer: it is pressed on a handle. Released on a port of the other side, it connects
+// both. Released on a port of the same side, it moves the wires of the first port there.
 
 import { current } from "./server.js";
 import { draw, ui } from "./ui.js";
 import { setPointer } from "./wires.js";
-import { OPPOSITE, join } from "./wiring.js";
+import { OPPOSITE, isConnected, join, move } from "./wiring.js";
 
 const START = 4; // a press becomes a drag after this movement, in pixels
 const EDGE = 40; // a drag so close to the upper or lower edge scrolls the diagram, in pixels
@@ -47,7 +48,7 @@ function follow(start, handle) {
   const show = (event) => {
     const diagram = document.getElementById("diagram").getBoundingClientRect();
     setPointer({ x: event.clientX - diagram.left, y: event.clientY - diagram.top });
-    hover(portAt(event, side));
+    hover(portAt(event, side, name));
   };
   const hover = (port) => {
     if (port === over) return;
@@ -56,9 +57,9 @@ function follow(start, handle) {
     over?.classList.add("over");
   };
   const released = (event) => {
-    const port = dragging && event.type === "pointerup" ? portAt(event, side) : null;
+    const port = dragging && event.type === "pointerup" ? portAt(event, side, name) : null;
     finish();
-    if (port) join(side, name, port.dataset.name);
+    if (port) (port.dataset.side === side ? move : join)(side, name, port.dataset.name);
   };
   const pressed = (event) => {
     if (event.key === "Escape") finish();
@@ -84,9 +85,12 @@ function follow(start, handle) {
   }
 }
 
-function portAt(event, side) {
-  const port = document.elementFromPoint(event.clientX, event.clientY)?.closest("[data-drop]");
-  return port?.dataset.side === OPPOSITE[side] ? port : null;
+// The port under the pointer at which the end can be dropped, or null.
+function portAt(event, side, name) {
+  const port = document.elementFromPoint(event.clientX, event.clientY)?.closest("[data-drop]") ?? null;
+  if (port === null || port.dataset.side === OPPOSITE[side]) return port;
+  const other = port.dataset.side === side && port.dataset.name !== name;
+  return other && isConnected(current(), side, name) ? port : null;
 }
 
 function scroll(y) {

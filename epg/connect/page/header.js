@@ -3,14 +3,16 @@
 
 import { generate } from "./build.js";
 import { chooseTarget } from "./chooser.js";
+import { closeDialog, openDialog } from "./dialog.js";
 import { h } from "./dom.js";
 import { icon } from "./icons.js";
 import { counted, shortFile } from "./problems.js";
+import { current } from "./server.js";
 import { attempt, openTab } from "./ui.js";
 
 export function header(state) {
   const brand = h("p.brand", { key: "brand" }, icon("target"), h("span", "EPG"));
-  const close = h("button.quiet", { key: "close", onclick: () => attempt("done") }, "Close EPG");
+  const close = h("button.quiet", { key: "close", onclick: () => askToClose(state) }, "Close EPG");
   if (state.phase === "choose") {
     return [brand, h("p.title", { key: "title" }, "New project"), h("span.space", { key: "space" }), close];
   }
@@ -39,6 +41,29 @@ export function header(state) {
       : h("button", { key: "generate", class: "primary", onclick: generate }, "Generate"),
     close,
   ];
+}
+
+// Closes EPG. If there are unsaved changes, the user first decides about them.
+function askToClose(state) {
+  if (!state.draft?.changed) return attempt("done");
+  const save = async () => {
+    closeDialog();
+    if (await attempt("save")) await attempt("done");
+  };
+  const discard = () => {
+    closeDialog();
+    attempt("done");
+  };
+  openDialog("close", "Close EPG", () => [
+    h("p", "There are unsaved changes. The tab Changes shows them."),
+    h(
+      "div.buttons",
+      h("button", { type: "button", onclick: discard }, "Close without saving"),
+      h("span.space"),
+      h("button", { type: "button", onclick: closeDialog }, "Cancel"),
+      h("button", { type: "button", class: "primary", onclick: save, disabled: current().draft.conflict }, "Save and close"),
+    ),
+  ]);
 }
 
 function button(text, keys, enabled, onclick) {

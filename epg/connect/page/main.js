@@ -48,8 +48,14 @@ function diagram(state) {
   if (!state.model) {
     return [h("p.empty", { key: "none" }, "The model cannot be read. The tab Problems shows the reason.")];
   }
-  const byPort = Map.groupBy(state.diagnostics, (each) => each.port);
-  const byComponent = Map.groupBy(byPort.get(null) || [], (each) => each.component);
+  const byPort = new Map();
+  for (const each of state.diagnostics) {
+    for (const port of each.ports) byPort.set(port, [...(byPort.get(port) || []), each]);
+  }
+  const byComponent = Map.groupBy(
+    state.diagnostics.filter((each) => each.port === null),
+    (each) => each.component,
+  );
   const wires = Object.entries(state.wires).flatMap(([port, ends]) => ends.map((end) => ({ port, end })));
   const users = Map.groupBy(wires, ({ end }) => end.reference);
   return [

@@ -5,21 +5,26 @@ import { h } from "./dom.js";
 import { getPicture } from "./server.js";
 import { draw } from "./ui.js";
 
+// The picture, or the last one before the errors that prevent a new one.
 export function picture(state, name) {
-  const shown = newest(name, `picture/${name}.svg?version=${state.version}`);
+  const isNew = state.pictures[name];
+  const key = `${state.project.name} ${name}`;
+  const shown = isNew ? newest(key, `picture/${name}.svg?version=${state.version}`) : pictures.get(key)?.shown;
+  if (!shown && !isNew) return h("p.empty", { key: "none" }, "The picture is drawn when the errors are corrected.");
   return [
     h("a", { key: "open", href: shown, target: "_blank", rel: "noopener" }, "Open in a new tab"),
-    h("img.picture", { key: name, alt: description(state, name), src: shown }),
+    !isNew && h("p.muted", { key: "old" }, "The files have errors. This is the picture before them."),
+    h(isNew ? "img.picture" : "img.picture.old", { key: name, alt: description(state, name), src: shown }),
   ];
 }
 
-const pictures = new Map(); // name -> {wanted, shown}: the address to fetch, and the local address of the shown version
+const pictures = new Map(); // project and name -> {wanted, shown}: the address to fetch, and the local address of the shown version
 
 // Returns the local address of the newest fetched version of a picture, null before the first one. Starts to fetch the
 // version `wanted`; the old version stays visible until then.
-function newest(name, wanted) {
-  const entry = pictures.get(name) || { wanted: "", shown: null };
-  pictures.set(name, entry);
+function newest(key, wanted) {
+  const entry = pictures.get(key) || { wanted: "", shown: null };
+  pictures.set(key, entry);
   if (entry.wanted !== wanted) {
     entry.wanted = wanted;
     fetchNewest(entry, wanted);

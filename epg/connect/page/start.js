@@ -4,6 +4,7 @@
 import { configurationCards } from "./configurations.js";
 import { h, textField } from "./dom.js";
 import { wiringPicture } from "./pictures.js";
+import { current } from "./server.js";
 import { attempt, draw, ui } from "./ui.js";
 import { unitMark } from "./wiring.js";
 
@@ -57,6 +58,19 @@ function modelStep(model) {
   );
 }
 
+let named = null; // the name for which the folder was last proposed; null before the first change of the name
+
+// Lets the folder have the name of the project, as long as the user has not changed the folder.
+function nameFolder(event) {
+  const { folder, name } = event.target.form.elements;
+  const { create } = current();
+  const proposed = (text) => create.folder.replace(/[^/\\]*$/, text);
+  if (folder.value === (named === null ? create.folder : proposed(named))) {
+    named = name.value.trim();
+    folder.value = proposed(named);
+  }
+}
+
 function projectStep(state) {
   const picked = state.configurations.find((each) => each.name === ui.chosen);
   const create = async (event) => {
@@ -85,7 +99,7 @@ function projectStep(state) {
     h(
       "form",
       { onsubmit: create, autocomplete: "off" },
-      textField("create-name", "Name", { name: "name", required: true, initial: state.create.name }),
+      textField("create-name", "Name", { name: "name", required: true, initial: state.create.name, oninput: nameFolder }),
       textField("create-folder", "Folder", { name: "folder", required: true, initial: state.create.folder }),
       h("p.picked", picked ? ["Target ", h("b", picked.name)] : h("span.muted", "No target is chosen yet.")),
       picked?.missing.length &&

@@ -31,7 +31,7 @@ export function drawWires() {
     anchors.set(key, { x: box.left + box.width / 2 - zero.left, y: box.top + box.height / 2 - zero.top });
   }
   const size = { width: diagram.scrollWidth, height: diagram.scrollHeight };
-  const bad = new Set(state.diagnostics.filter(isError).map((each) => each.port));
+  const bad = new Set(state.diagnostics.filter(isError).flatMap((each) => each.ports));
   const paths = [];
   for (const [port, ends] of Object.entries(state.wires)) {
     ends.forEach((end, n) => {

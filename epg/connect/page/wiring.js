@@ -50,20 +50,58 @@ export async function disconnect(port) {
   if (await attempt("disconnect", { port }, port)) say(`${port} is not connected`);
 }
 
+// Changes the wires of several ports in one step: `wires` maps ports to their ends. A port without ends is removed.
+function rewire(wires, port) {
+  const changes = Object.entries(wires).map(([name, ends]) => ({
+    port: name,
+    ends: ends.length ? ends.map(plain) : null,
+  }));
+  return attempt("rewire", { changes }, port);
+}
+
+// The ports whose wires end at a component port.
+export const usersOf = (state, reference) =>
+  Object.keys(state.wires).filter((port) => endsOf(state, port).some((end) => end.reference === reference));
+
 // Connects a component port and a model port. `side` and `name` are the end that was taken first, `other` is the
-// second. An input has one source: a new one replaces it. An output may drive several sinks.
+// second. An input has one source, and a sink has one driver: a new wire replaces the old one. An output may drive
+// several sinks.
 export async function join(side, name, other) {
   const [port, reference] = ofModel(side) ? [name, other] : [other, name];
   const state = current();
   const isOutput = side === "outputs" || side === "sinks";
-  const ends = isOutput ? [...endsOf(state, port)] : [];
   if (endsOf(state, port).some((end) => end.reference === reference)) {
     say(`${port} and ${reference} are connected already`);
     return;
   }
-  ends.push({ reference });
-  if (await setEnds(port, ends)) announceWire(port, reference);
+  const wires = {};
+  const replaced = isOutput ? usersOf(state, reference) : [];
+  for (const user of replaced) wires[user] = endsOf(state, user).filter((end) => end.reference !== reference);
+  wires[port] = [...(isOutput ? endsOf(state, port) : []), { reference }];
+  if (await rewire(wires, port)) announceWire(port, reference, replaced);
 }
+
+// Moves the end of all wires at the port `name` to the port `other` of the same side. Their conversions stay.
+export async function move(side, name, other) {
+  const state = current();
+  const wires = {};
+  if (ofModel(side)) {
+    const isOutput = side === "outputs";
+    wires[name] = [];
+    wires[other] = [...(isOutput ? endsOf(state, other) : []), ...endsOf(state, name)];
+  } else {
+    const replaced = side === "sinks" ? usersOf(state, other) : [];
+    for (const port of new Set([...replaced, ...usersOf(state, name)])) {
+      wires[port] = endsOf(state, port)
+        .filter((end) => side === "sources" || end.reference !== other)
+        .map((end) => (end.reference === name ? { ...end, reference: other } : end));
+    }
+  }
+  if (await rewire(wires, ofModel(side) ? other : null)) say(`The wire of ${name} now ends at ${other}`);
+}
+
+export const isConnected = (state, side, name) =>
+  ofModel(side) ? endsOf(state, name).length > 0 : usersOf(state, name).length > 0;
 
 // Replaces end number `n` of a port, from 0. A `reference` of null removes the end.
 export async function replaceEnd(port, n, reference) {
@@ -75,8 +113,9 @@ export async function replaceEnd(port, n, reference) {
   else if ((await setEnds(port, ends)) && reference) announceWire(port, reference);
 }
 
-function announceWire(port, reference) {
+function announceWire(port, reference, replaced = []) {
   const problems = current().diagnostics.filter((each) => each.port === port);
   const what = problems.map((each) => `${each.severity}: ${each.message}`).join(". ");
-  say(`${port} is connected with ${reference}. ${what}`);
+  const instead = replaced.length ? ` instead of ${replaced.join(" and ")}` : "";
+  say(`${port} is connected with ${reference}${instead}. ${what}`);
 }

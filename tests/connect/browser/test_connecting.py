@@ -82,6 +82,7 @@ def test_connects_by_drag(jiwy: Project, open_page: Open, backwards: bool) -> No
 
 
 def test_drag_beside_a_port_changes_nothing(jiwy: Project, open_page: Open) -> None:
+    jiwy.write(UNBOUND)
     page = open_page(jiwy.address)
     drag(page, handle(page, "sources", "encoder_tilt"), page.locator(".model-head h2"))
     drag(page, handle(page, "sources", "encoder_tilt"), handle(page, "sources", "encoder_pan"))
@@ -97,6 +98,43 @@ def test_drag_of_an_output_adds_an_end(jiwy: Project, open_page: Open) -> None:
     page.get_by_role("combobox", name="pan_logging, end 2").wait_for()
     save(page)
     assert "  pan_logging: [pan_publisher, tilt_publisher]" in jiwy.text()
+
+
+@pytest.mark.parametrize(
+    ("side", "name", "other", "lines"),
+    [
+        ("sinks", "pan_publisher", "tilt_publisher", ["pan_logging: {to: tilt_publisher, scale: 2}"]),
+        ("sources", "pan_subscriber", "encoder_pan", ["setpoint_pan: encoder_pan"]),
+        ("inputs", "setpoint_pan", "setpoint_tilt", ["setpoint_tilt: pan_subscriber"]),
+        ("outputs", "pan_logging", "pwm_tilt", ["pwm_tilt: [pwm_tilt, {to: pan_publisher, scale: 2}]"]),
+    ],
+)
+def test_the_end_of_a_wire_is_moved(
+    jiwy: Project, open_page: Open, side: str, name: str, other: str, lines: list[str]
+) -> None:
+    """By its handle, to a port of the same side, with its conversion.  A wire of the other port gives way."""
+    jiwy.write(("  pan_logging: pan_publisher", "  pan_logging: {to: pan_publisher, scale: 2}"))
+    page = open_page(jiwy.address, viewport={"width": 1280, "height": 1200})
+    count = page.locator(".wire-group").count()
+    drag(page, handle(page, side, name), handle(page, side, other))
+    page.get_by_text("● Unsaved changes").wait_for()
+    assert page.locator(".wire-group").count() == (count if name in ("pan_logging", "pan_subscriber") else count - 1)
+    save(page)
+    text = jiwy.text()
+    assert all(f"  {line}\n" in text for line in lines), text
+    page.get_by_role("button", name="Undo").click()
+    until(page, f"document.querySelectorAll('.wire-group').length === {count}")
+
+
+def test_a_new_wire_replaces_the_other_driver(jiwy: Project, open_page: Open) -> None:
+    page = open_page(jiwy.address, viewport={"width": 1280, "height": 1200})
+    drag(page, handle(page, "outputs", "tilt_logging"), handle(page, "sinks", "pwm_tilt"))
+    page.get_by_text("● Unsaved changes").wait_for()
+    wires = jiwy.epg.state()["wires"]
+    assert [end["reference"] for end in wires["tilt_logging"]] == ["tilt_publisher", "pwm_tilt"]
+    assert "pwm_tilt" not in wires
+    page.get_by_role("button", name="Undo").click()
+    page.get_by_text("Saved", exact=True).wait_for()
 
 
 def test_connects_by_list(jiwy: Project, open_page: Open) -> None:
@@ -200,8 +238,10 @@ def test_conflicts_have_the_words_of_the_command_line(
         page = open_page(jiwy.address)
     else:
         page = open_page(jiwy.address, viewport={"width": 1280, "height": 1200})
-        drag(page, handle(page, side, name), handle(page, "sinks", other))
+        field(page, name).select_option(other)
         page.get_by_text("● Unsaved changes").wait_for()
+        twice = port(page, other).get_by_text("already driven")
+        twice.wait_for()  # at both ports: the user need not know which one comes first in the file
         save(page)
     found = check_says("host_jiwy.tcf", jiwy.folder, jiwy.file)
     assert found
@@ -279,7 +319,12 @@ def test_conversion(jiwy: Project, open_page: Open) -> None:
     page.get_by_role("button", name="Conversion from encoder_pan to position_pan: none").click()
     dialog = page.get_by_role("dialog", name="encoder_pan → position_pan")
     assert page.evaluate("document.activeElement.name") == "scale"
+    assert dialog.get_by_role("status").inner_text() == "0 rad → 0 rad, 1 rad → 1 rad"
+    dialog.get_by_label("Unit").fill("deg")
+    assert dialog.get_by_role("status").inner_text() == "0 rad → 0 deg, 1 rad → 57.2958 deg"
+    dialog.get_by_label("Unit").fill("")
     dialog.get_by_label("Scale").fill("one half")
+    assert dialog.get_by_role("status").inner_text() == ""
     dialog.get_by_role("button", name="Apply").click()
     dialog.get_by_role("alert").wait_for()
     (wrong,) = jiwy.epg.state()["diagnostics"]
@@ -290,6 +335,7 @@ def test_conversion(jiwy: Project, open_page: Open) -> None:
     dialog.get_by_role("button", name="Apply").click()
     dialog.get_by_text("Limits need both").wait_for()
     dialog.get_by_label("Highest").fill("1")
+    assert dialog.get_by_role("status").inner_text() == "0 rad → 0.1 rad, 1 rad → 0.6 rad"
     page.keyboard.press("Enter")
     dialog.wait_for(state="detached")
     assert page.locator(".wire-label").filter(has_text="×1/2 +0.1 in -1…1").is_visible()
@@ -317,6 +363,19 @@ def test_conversions_of_the_tcf_and_of_units(jiwy: Project, open_page: Open, tmp
         assert page.locator('.sinks .port[data-name="pwm_pan"] .tcf-label').inner_text() == ".tcf: ×0.5"
         port(page, "pwm_pan").locator(".wire-label").click()
         assert "×0.5" in page.get_by_role("dialog", name="pwm_pan → pwm_pan").inner_text()
+
+
+def test_pictures_stay_while_there_are_errors(jiwy: Project, open_page: Open) -> None:
+    page = open_page(jiwy.address)
+    page.get_by_role("tab", name="Application").click()
+    until(page, "document.querySelector('img.picture')?.naturalWidth > 0")
+    field(page, "position_pan").select_option("")
+    page.get_by_text("This is the picture before them").wait_for()
+    assert page.locator("img.picture.old").is_visible()
+    page.get_by_role("tab", name="Schedule").click()
+    page.get_by_text("The picture is drawn when the errors are corrected.").wait_for()
+    page.get_by_role("button", name="Undo").click()
+    until(page, "document.querySelector('img.picture:not(.old)')?.naturalWidth > 0")
 
 
 def test_undo_and_redo(jiwy: Project, open_page: Open) -> None:

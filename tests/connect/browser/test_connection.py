@@ -31,6 +31,23 @@ def test_says_that_the_connection_is_lost(browser: Any, open_page: Open, tmp_pat
     leaving.value.accept()
 
 
+def test_asks_before_changes_are_lost(browser: Any, open_page: Open, tmp_path: Path) -> None:
+    copy_jiwy(tmp_path / "jiwy")
+    file = tmp_path / "jiwy/jiwy.bindings.yaml"
+    with Served(tmp_path / "jiwy") as epg:
+        page = open_page(epg.address)
+        field(page, "position_tilt").select_option("encoder_pan")
+        page.get_by_text("● Unsaved changes").wait_for()
+        page.get_by_role("button", name="Close EPG").click()
+        dialog = page.get_by_role("dialog", name="Close EPG")
+        dialog.get_by_role("button", name="Cancel").click()
+        assert epg.state()["draft"]["changed"]
+        page.get_by_role("button", name="Close EPG").click()
+        dialog.get_by_role("button", name="Save and close").click()
+        page.get_by_text("EPG has ended").wait_for()
+    assert "  position_tilt: encoder_pan\n" in file.read_text()
+
+
 def test_goes_on_when_the_connection_is_back(jiwy: Project, open_page: Open) -> None:
     page = open_page(jiwy.address)
     page.context.set_offline(True)

@@ -39,9 +39,13 @@ def test_from_model_to_project(started: Served, model: Path, open_page: Open) ->
     until(page, "[...document.querySelectorAll('.card img')].some(image => image.naturalWidth > 0)")
 
     page.get_by_role("radio", name="rpi_pico_bare_metal_jiwy").check()
+    name_field, folder_field = (page.get_by_role("textbox", name=name) for name in ("Name", "Folder"))
+    name_field.fill("pan_tilt")
+    assert folder_field.input_value() == str(model.parent / "pan_tilt"), "the folder has the name of the project"
     folder = model.parent / "my camera"
-    page.get_by_role("textbox", name="Folder").fill(str(folder))
-    page.get_by_role("textbox", name="Name").fill("1 camera")
+    folder_field.fill(str(folder))
+    name_field.fill("1 camera")
+    assert folder_field.input_value() == str(folder), "the user's own folder stays"
     create.click()
     page.get_by_role("alert").wait_for()  # this is not a valid name of a CMake target
     assert not folder.exists()
