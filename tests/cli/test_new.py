@@ -243,7 +243,7 @@ def test_ports_that_nobody_can_bind_are_named(tmp_path: Path, capsys: pytest.Cap
 
 
 def test_weak_matches_with_hardware_are_not_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """RELbot's ports share words with topics and hardware: only topics are bound; the user binds encoders and motors."""
+    """RELbot's ports share words with topics and hardware: only topics are bound; the user binds the others."""
     assert new(tmp_path / "robot", "host_relbot", RELBOT) == 0
     assert capsys.readouterr().err == ""
     assert check(tmp_path / "robot", "robot") == 1
