@@ -13,9 +13,11 @@ from epg.diagnostics import Diagnostics
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("name", help="name of the program, or of the part that --target names: prefix of its C symbols")
+    parser.add_argument("name", help="name of the program")
     parser.add_argument("--system", required=True, type=Path, metavar="FILE", help="the system (*.system.yaml)")
-    parser.add_argument("--target", metavar="TARGET", help="write the part of this target; default: the program")
+    parser.add_argument(
+        "--target", metavar="TARGET", help="write the part of this target, <name>_<target>; default: the program"
+    )
     add_output_arguments(parser)
     parser.add_argument("--caller", metavar="CMAKELISTS", help=argparse.SUPPRESS)
 
@@ -23,10 +25,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.cli.system import system_of, target_of
     from epg.emit.cmake import PathNames
-    from epg.emit.outputs import application_outputs
-    from epg.project import load_application
     from epg.system.check_system import check_system
-    from epg.system.simulation import simulation_outputs
+    from epg.system.simulation import part_outputs, simulation_outputs
 
     system, caller = system_of(options, diagnostics)
     names = PathNames(options.source_dir)
@@ -35,8 +35,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         files = simulation_outputs(checked, options.name, names, diagnostics)
     else:
         target = target_of(system, options.target, caller, diagnostics)
-        request = system.simulated(target, options.name, user_roots())
-        files = application_outputs(diagnostics.checked(load_application(request, diagnostics)), request.roots, names)
+        files = part_outputs(system, target, options.name, user_roots(), names, diagnostics)
     update_folder(options.output, files, sys.stdout if options.json else None)
     write_warnings(options.warnings, diagnostics)
     return 0

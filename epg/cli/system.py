@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +13,7 @@ from epg.diagnostics import Diagnostics, did_you_mean
 from epg.quantity import show
 
 if TYPE_CHECKING:
+    from epg.resolve.application import Plant
     from epg.source import Span
     from epg.system.check_system import CheckedSystem, Link, Loop
     from epg.system.system import System, SystemTarget
@@ -68,6 +69,8 @@ def system_text(checked: CheckedSystem) -> str:
         header = ("from", "to", "message", "unit", "sent", "oldest value")
         parts.append(table(header, [_row(link) for link in checked.links]))
     parts += [_loop(loop) for loop in checked.loops]
+    if checked.plant is not None:
+        parts.append(_plant_text(checked.plant, checked.system.targets))
     return "\n\n".join([checked.system.name, *parts])
 
 
@@ -99,13 +102,32 @@ def system_data(checked: CheckedSystem) -> dict[str, Any]:
             for link in checked.links
         ],
         "loops": [{"targets": list(loop.targets), "age": float(loop.age)} for loop in checked.loops],
+        "plant": None if checked.plant is None else _plant(checked.plant),
     }
+
+
+def _plant(plant: Plant) -> dict[str, Any]:
+    """The plant of a system as data: its step in seconds, and for each of its ports the components."""
+    ports = {
+        kind: [
+            {"port": wire.port.name, "component": f"{wire.component.name}.{wire.component_port.name}"} for wire in wires
+        ]
+        for kind, wires in (("inputs", plant.inputs), ("outputs", plant.outputs))
+    }
+    return {"model": plant.model.name, "step": float(plant.model.step), **ports}
 
 
 def _row(link: Link) -> tuple[object, ...]:
     sent = "on change" if link.on_change else f"every {show(link.period, 'time')}"
     ends = (link.connection.sender, link.connection.receiver)
     return (*ends, link.message, link.unit, sent, show(link.age, "time"))
+
+
+def _plant_text(plant: Plant, targets: Iterable[str]) -> str:
+    """The model of the plant, its step, and the targets that are bound to it."""
+    bound = {wire.component.name.partition("/")[0] for wire in (*plant.inputs, *plant.outputs)}
+    names = ", ".join(name for name in targets if name in bound)
+    return f"plant {plant.model.name}: step {show(plant.model.step, 'time')}, bound to {names}"
 
 
 def _loop(loop: Loop) -> str:

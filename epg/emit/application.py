@@ -31,6 +31,7 @@ from epg.emit.text import CMakeCode, Code, DevicetreeCode, Escaped, KconfigCode,
 from epg.emit.topics import Topics, topics_of
 from epg.emit.views import POINTS, Arrival, InputView, OutputView, Part
 from epg.models.details import HandWritten
+from epg.models.model import Model
 from epg.resolve.application import Application, ResolvedComponent, Step, Wire
 from epg.resolve.conversion import folded
 
@@ -130,9 +131,9 @@ class Emitter:
     def _plant(self) -> dict[str, Any]:
         """The template variables of a simulated plant.  The lists are empty if the application has no plant."""
         plant = self.app.plant
-        details = plant.model.details if plant else None
         return {
-            "plant_starts_by_step": isinstance(details, HandWritten) and not details.init,
+            "plant_library": identifier(plant.library or f"{self.app.name}_plant") if plant else Code(""),
+            "plant_starts_by_step": plant is not None and starts_by_step(plant.model),
             "plant_inputs": [self._input(wire, "plant_read", counted=False) for wire in plant.inputs] if plant else [],
             "plant_outputs": [self._plant_output(wire) for wire in plant.outputs] if plant else [],
         }
@@ -227,6 +228,11 @@ class Emitter:
                 call = f"epg_limit(&{self.prefix}_control, " if counted else "epg_clamp("
                 value = Code(f"{call}{value}, {low}, {high})")
         return value
+
+
+def starts_by_step(plant: Model) -> bool:
+    """True if the first step of a plant computes its outputs at time 0, because it has no function for that."""
+    return isinstance(plant.details, HandWritten) and not plant.details.init
 
 
 def _reference(wire: Wire) -> str:

@@ -24,7 +24,7 @@ def application_outputs(app: Application, roots: Sequence[Path], names: PathName
     emitter = Emitter(app, roots)
     files = emitter.files()
     parts = [(app.model, f"{app.name}_model", app.parameters)]
-    if app.plant is not None:
+    if app.plant is not None and not app.plant.library:
         parts.append((app.plant.model, f"{app.name}_plant", app.plant.parameters))
     builds = []
     for model, name, parameters in parts:

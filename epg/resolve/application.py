@@ -117,13 +117,18 @@ class Topic:
 
 @dataclass(frozen=True)
 class Plant:
-    """The simulated plant of a target on the host.  Its inputs come from actuators, and its outputs drive sensors."""
+    """A simulated plant.  Its inputs come from actuators, and its outputs drive sensors.
+
+    ``library`` is empty for the plant of one target.  For the plant of a system it is the name of the plant's library,
+    and ``model`` has only the ports of this target.
+    """
 
     model: Model
     inputs: tuple[Wire, ...]
     outputs: tuple[Wire, ...]
     parameters: Mapping[str, float]
-    steps_per_period: int
+    steps_per_period: int = 1
+    library: str = ""
 
 
 @dataclass(frozen=True)

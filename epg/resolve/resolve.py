@@ -226,7 +226,6 @@ def _plant(
         message = f"{platform.name} cannot simulate a plant"
         diagnostics.error("plant-not-simulated", span, message, hint="remove PLANT, or choose the target 'host'")
         return None
-    _same_model(bindings, model, diagnostics)
     ratio = period / model.step
     if ratio.denominator != 1:
         asked, step = _apart(period, model.step)
@@ -239,11 +238,18 @@ def _plant(
         message = f"the plant would make {float(ratio):g} steps in every control period"
         hint = "export the plant with a longer step"
         diagnostics.error("step-not-multiple", bindings.model_span, message, hint=hint)
+    wired = wired_plant(plant, components, diagnostics)
+    return replace(wired, steps_per_period=max(1, ratio.numerator // ratio.denominator))
+
+
+def wired_plant(plant: PlantFiles, components: Mapping[str, ResolvedComponent], diagnostics: Diagnostics) -> Plant:
+    """The plant with the wires to the ``components`` that its bindings name.  Reports mistakes in the bindings."""
+    model, bindings = plant.model, plant.bindings
+    _same_model(bindings, model, diagnostics)
     physical = {name: component for name, component in components.items() if not component.kind.communication}
     wiring = Wiring(bindings, model, physical, diagnostics, plant=True)
     inputs, outputs = wiring.inputs(), wiring.outputs()
-    parameters = parameter_values(parameter_settings(bindings, model, diagnostics))
-    return Plant(model, inputs, outputs, parameters, max(1, ratio.numerator // ratio.denominator))
+    return Plant(model, inputs, outputs, parameter_values(parameter_settings(bindings, model, diagnostics)))
 
 
 def _files(

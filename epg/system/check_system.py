@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -15,9 +15,10 @@ from epg.emit.symbols import TEMPLATES
 from epg.emit.template import environment
 from epg.emit.topics import TopicView, topics_of
 from epg.quantity import conversion_factor, dimension_of, show
-from epg.resolve.application import Application, Topic, Wire
+from epg.resolve.application import Application, Plant, Topic, Wire
 from epg.system.loader import Loader
 from epg.system.loops import loops_of
+from epg.system.plant import check_plant, load_plant
 from epg.system.ranges import Range, received_range, sent_range
 from epg.system.system import Connection, End, System
 
@@ -61,6 +62,7 @@ class CheckedSystem:
     applications: Mapping[str, Application]
     links: Sequence[Link]
     loops: Sequence[Loop]
+    plant: Plant | None = None
 
 
 def check_system(system: System, user_roots: Sequence[Path], diagnostics: Diagnostics) -> CheckedSystem | None:
@@ -69,6 +71,7 @@ def check_system(system: System, user_roots: Sequence[Path], diagnostics: Diagno
     loader = Loader(user_roots, diagnostics)
     requests = ((name, system.request(target, user_roots)) for name, target in system.targets.items())
     applications = loader.applications(requests)
+    files = None if system.plant is None else load_plant(system.plant, loader.model, diagnostics)
     if len(applications) < len(system.targets) or diagnostics.error_count > errors:
         return None
     templates = environment([TEMPLATES, *loader.roots])
@@ -76,7 +79,8 @@ def check_system(system: System, user_roots: Sequence[Path], diagnostics: Diagno
     for name, application in applications.items():
         views = topics_of(application, Macros(application, templates).macro)
         ends[name] = _Target(application, views.subscriptions, views.publications)
-    return _Checker(system, loader, ends, diagnostics).checked()
+    checked = _Checker(system, loader, ends, diagnostics).checked()
+    return checked if files is None else replace(checked, plant=check_plant(files, system, applications, diagnostics))
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,9 @@ from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.documents.items import map_of
 from epg.documents.schema import load_schema, validate
 from epg.documents.yaml_file import load_yaml, newer_version
+from epg.models.model_yaml import step_of
 from epg.source import Span, YamlNode
-from epg.system.system import Clock, Connection, End, System, SystemTarget, Transport
+from epg.system.system import Clock, Connection, End, System, SystemPlant, SystemTarget, Transport
 
 _PARAMETERS = ("type", "unit", "qos")
 
@@ -52,7 +53,20 @@ class _Reader:
         sends = root.get("world", "sends")
         world = [end for node in (sends.elements() if sends else ()) for end in self.ends(node)]
         self.check_receivers(connections, world)
-        return System(str(root["system"].value), self.path, self.targets, tuple(connections), tuple(world))
+        plant = self.plant(root.get("plant"))
+        return System(str(root["system"].value), self.path, self.targets, tuple(connections), tuple(world), plant)
+
+    def plant(self, node: YamlNode | None) -> SystemPlant | None:
+        if node is None:
+            return None
+        stated = node.get("period")
+        return SystemPlant(
+            model=self.path.parent / str(node["model"].value),
+            bindings=self.path.parent / str(node["bindings"].value),
+            period=None if stated is None else step_of(stated, self.diagnostics),
+            span=node.span,
+            period_span=node.span if stated is None else stated.span,
+        )
 
     # Targets -------------------------------------------------------------------------------------------------------
 

@@ -44,12 +44,13 @@ class Loader:
         Reports the mistakes in all files, and leaves out targets that have mistakes.
         """
         loaded = {
-            name: load_parts(request, self.diagnostics, self._model, self._catalog).application
+            name: load_parts(request, self.diagnostics, self.model, self._catalog).application
             for name, request in requests
         }
         return {name: application for name, application in loaded.items() if application is not None}
 
-    def _model(self, path: Path, diagnostics: Diagnostics) -> Model | None:
+    def model(self, path: Path, diagnostics: Diagnostics) -> Model | None:
+        """The model in ``path``, which is read once; None after reporting mistakes."""
         if path not in self._models:
             self._models[path] = load_model(path, diagnostics)
         return self._models[path]

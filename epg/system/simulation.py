@@ -5,17 +5,26 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from epg.check.simulated import PLATFORM
 from epg.diagnostics import Diagnostics
+from epg.emit.application import starts_by_step
 from epg.emit.cmake import PathNames, images_cmake, system_cmake
 from epg.emit.licence import with_licence
+from epg.emit.model import emit_model, model_build
+from epg.emit.outputs import application_outputs
 from epg.emit.symbols import TEMPLATES
 from epg.emit.template import environment
+from epg.emit.text import Code, identifier
+from epg.models import load_model
+from epg.models.model import Model
+from epg.project import load_application
 from epg.resolve.application import Application, Topic
 from epg.system.check_system import CheckedSystem
 from epg.system.images import images_of
-from epg.system.system import Connection, End
+from epg.system.plant import load_plant, with_plant
+from epg.system.system import Connection, End, System, SystemTarget
 
 
 @dataclass(frozen=True)
@@ -25,6 +34,7 @@ class TargetView:
     name: str
     symbol: str
     has_plant: bool
+    in_plant: bool
     start_ns: int
     drift_ppb: int
 
@@ -44,6 +54,18 @@ class ConnectionView:
     reliable: bool
 
 
+@dataclass(frozen=True)
+class PlantView:
+    """The plant of the system in the tables.  ``library`` is the beginning of the names of its C symbols."""
+
+    model: Model
+    library: Code
+    file: str
+    step_ns: int
+    divisor: int
+    starts_by_step: bool
+
+
 def part_name(program: str, target: str) -> str:
     """The beginning of the C symbols of a target in the simulation ``program``."""
     return f"{program}_{target}"
@@ -59,12 +81,14 @@ def simulation_outputs(
         for name, target in system.targets.items()
     )
     diagnostics.stop_if_errors()
+    plant, moved = _plant(checked, program)
     order = {name: number for number, name in enumerate(applications)}
     targets = [
         TargetView(
             name=name,
             symbol=part_name(program, name),
             has_plant=applications[name].plant is not None,
+            in_plant=name in moved,
             start_ns=round(target.clock.start * 10**9),
             drift_ppb=target.clock.drift,
         )
@@ -76,11 +100,61 @@ def simulation_outputs(
     connections = [_connection(connection, applications, order) for connection in joined.values()]
     env = environment([TEMPLATES, *loader.roots])
     template = env.get_template(f"platforms/{PLATFORM}/system.c.j2")
-    files = {f"{program}_system.c": template.render(system=system, targets=targets, connections=connections)}
+    files = {
+        f"{program}_system.c": template.render(system=system, targets=targets, connections=connections, plant=plant)
+    }
     files[f"{program}_images.cmake"] = images_cmake(images_of(checked), names)
     used = {path for application in applications.values() for path in application.files}
-    cmake = system_cmake(program, sorted(used), [target.name for target in targets], files, names)
+    library = None
+    if plant is not None and checked.plant is not None and system.plant is not None:
+        model, parameters = checked.plant.model, checked.plant.parameters
+        name = plant_library(program)
+        library = name, model, model_build(model, name, parameters)
+        files |= emit_model(model, name, parameters)
+        used |= {*model.files, system.plant.bindings}
+    cmake = system_cmake(program, sorted(used), [target.name for target in targets], library, files, names)
     return with_licence({**files, f"{program}.cmake": cmake})
+
+
+def plant_library(program: str) -> str:
+    """The name of the library of the system's plant in the simulation ``program``."""
+    return part_name(program, "plant")
+
+
+def _plant(checked: CheckedSystem, program: str) -> tuple[PlantView | None, frozenset[str]]:
+    """The plant of the system, and the targets that are bound to it."""
+    plant = checked.plant
+    if plant is None:
+        return None, frozenset()
+    step = plant.model.step * 10**9
+    view = PlantView(
+        model=plant.model,
+        library=identifier(plant_library(program)),
+        file=f"{plant_library(program)}_unit.so",
+        step_ns=step.numerator,
+        divisor=step.denominator,
+        starts_by_step=starts_by_step(plant.model),
+    )
+    wires = (*plant.inputs, *plant.outputs)
+    return view, frozenset(wire.component.name.partition("/")[0] for wire in wires)
+
+
+def part_outputs(
+    system: System,
+    target: SystemTarget,
+    program: str,
+    user_roots: Sequence[Path],
+    names: PathNames,
+    diagnostics: Diagnostics,
+) -> dict[str, str]:
+    """The generated files of one target as a part of the program.  Stops after reporting mistakes."""
+    request = system.simulated(target, part_name(program, target.name), user_roots)
+    application = diagnostics.checked(load_application(request, diagnostics))
+    if system.plant is not None:
+        files = diagnostics.checked(load_plant(system.plant, load_model, diagnostics))
+        application = with_plant(application, target.name, files, plant_library(program), diagnostics)
+        diagnostics.stop_if_errors()
+    return application_outputs(application, request.roots, names)
 
 
 def _connection(

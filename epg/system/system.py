@@ -52,6 +52,20 @@ class SystemTarget:
 
 
 @dataclass(frozen=True)
+class SystemPlant:
+    """The plant of the whole system: a model, and its bindings to components of targets.
+
+    ``period`` is its step in seconds; None: the step of the model.
+    """
+
+    model: Path
+    bindings: Path
+    period: Fraction | None
+    span: Span
+    period_span: Span
+
+
+@dataclass(frozen=True)
 class End:
     """A port of a target: a topic component, one of its ports, or a port of the model."""
 
@@ -87,6 +101,7 @@ class System:
     targets: Mapping[str, SystemTarget]
     connections: Sequence[Connection]
     world: Sequence[End]
+    plant: SystemPlant | None = None
 
     def request(self, target: SystemTarget, user_roots: Sequence[Path] = (), ioc: Path | None = None) -> Request:
         """The request of one target.  It depends on this file and on the target's own files only."""

@@ -10,7 +10,8 @@ function(_epg_simulator_library)
   set(host "${here}/../host")
   file(GLOB sources CONFIGURE_DEPENDS "${here}/simulator/*.c")
   add_library(epg_simulator STATIC EXCLUDE_FROM_ALL ${sources}
-    "${host}/src/interface.c" "${host}/src/number.c" "${host}/src/setpoints.c" "${host}/src/trace.c")
+    "${host}/src/diverged.c" "${host}/src/interface.c" "${host}/src/number.c" "${host}/src/setpoints.c"
+    "${host}/src/trace.c")
   target_include_directories(epg_simulator PUBLIC "${here}/include" "${host}/include")
   target_link_libraries(epg_simulator PUBLIC epg_runtime ${CMAKE_DL_LIBS} m)
   target_compile_definitions(epg_simulator PRIVATE _POSIX_C_SOURCE=200809L)
@@ -31,6 +32,17 @@ function(_epg_simulated_module module library)
   target_compile_definitions(${module} PRIVATE _POSIX_C_SOURCE=200809L)
 endfunction()
 
+# Compiles a library for shared objects.
+function(_epg_simulated_library library)
+  foreach(part ${library} ${library}_export)
+    if(TARGET ${part})
+      set_target_properties(${part} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+      # Otherwise static objects of C++ templates would be one for all shared objects.
+      target_compile_options(${part} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fno-gnu-unique>)
+    endif()
+  endforeach()
+endfunction()
+
 # Called by epg_add_system() for each target: makes <name>_unit, and <name>_plant_unit if the target has a plant.
 function(_epg_simulated_target name)
   set(here "${CMAKE_CURRENT_FUNCTION_LIST_DIR}")
@@ -38,23 +50,22 @@ function(_epg_simulated_target name)
   _epg_simulator_library()
   target_include_directories(${name} PUBLIC "${here}/include" "${here}/../host/include")
   foreach(library epg_runtime ${name} ${EPG_MODELS})
-    foreach(part ${library} ${library}_export)
-      if(TARGET ${part})
-        set_target_properties(${part} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-        # Otherwise static objects of C++ templates would be one for all shared objects.
-        target_compile_options(${part} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fno-gnu-unique>)
-      endif()
-    endforeach()
+    _epg_simulated_library(${library})
   endforeach()
   _epg_simulated_module(${name}_unit ${name}
     "${here}/src/unit.c" "${host}/clock.c" "${host}/monotonic.c" "${host}/port.c")
   target_compile_definitions(${name}_unit PRIVATE EPG_UNIT_HOST=${name}_host EPG_UNIT_PLANT=${name}_unit_plant)
   if(TARGET ${name}_plant)
-    _epg_simulated_module(${name}_plant_unit ${name}_plant "${here}/src/plant.c")
-    target_link_libraries(${name}_plant_unit PRIVATE epg_runtime)
-    target_compile_definitions(${name}_plant_unit PRIVATE
-      EPG_PLANT=${name}_plant "EPG_PLANT_HEADER=\"${name}_plant.h\"")
+    _epg_simulated_plant(${name}_plant)
   endif()
+endfunction()
+
+# Called for the plant of a target and for that of a system: makes <library>_unit of the library of a model.
+function(_epg_simulated_plant library)
+  _epg_simulated_library(${library})
+  _epg_simulated_module(${library}_unit ${library} "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/src/plant.c")
+  target_link_libraries(${library}_unit PRIVATE epg_runtime)
+  target_compile_definitions(${library}_unit PRIVATE EPG_PLANT=${library} "EPG_PLANT_HEADER=\"${library}.h\"")
 endfunction()
 
 # Called by epg_add_executable().

@@ -5,10 +5,7 @@
  */
 #include "run.h"
 
-#include <stdio.h>
-
-#include "epg/finite.h"
-#include "number.h"
+#include "diverged.h"
 
 volatile sig_atomic_t epg_host_interrupted;
 
@@ -27,24 +24,13 @@ bool epg_host_plant_is_sound(epg_host_run_t *run, uint64_t time_ns)
     const epg_host_target_t *host = run->host;
     for (size_t i = 0; i < host->plant_output_count && run->diverged == NULL; i++) {
         const double value = *host->plant_outputs[i].value;
-        if (!epg_is_finite(value) || value > EPG_HOST_PLANT_LARGEST || value < -EPG_HOST_PLANT_LARGEST) {
+        if (epg_host_has_diverged(value)) {
             run->diverged = &host->plant_outputs[i];
             run->diverged_value = value;
             run->diverged_ns = time_ns;
         }
     }
     return run->diverged == NULL;
-}
-
-static void tell_diverged(const epg_host_run_t *run)
-{
-    fprintf(stderr, "error: the plant has diverged: %s is ", run->diverged->name);
-    epg_host_write_number(stderr, run->diverged_value);
-    fputs(" at ", stderr);
-    epg_host_write_number(stderr, epg_host_seconds(run->diverged_ns));
-    fputs(" s\nhint: an output of a plant must be finite and within +-1e12: check the plant's step size and its "
-          "parameters; --trace records its signals up to this time\n",
-          stderr);
 }
 
 void epg_host_run_end(epg_host_run_t *run, uint64_t tick_ns, uint64_t next_ns)
@@ -56,6 +42,6 @@ void epg_host_run_end(epg_host_run_t *run, uint64_t tick_ns, uint64_t next_ns)
     application->safe();
     epg_plant_actuate(&run->plant);
     if (run->diverged != NULL) {
-        tell_diverged(run);
+        epg_host_tell_diverged(run->diverged->name, run->diverged_value, run->diverged_ns);
     }
 }

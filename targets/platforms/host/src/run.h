@@ -58,9 +58,6 @@ static inline uint64_t epg_host_next_tick(uint64_t tick_ns, uint64_t period_ns, 
 /** Starts the plant, then the application, both at time 0.  `application` is the target's, or a copy of it. */
 void epg_host_run_start(epg_host_run_t *run, const epg_application_t *application);
 
-/** The largest value of a plant's output, in its unit.  A plant with a larger absolute value has diverged. */
-#define EPG_HOST_PLANT_LARGEST 1e12
-
 /**
  * Returns false if an output of the plant is not finite or too large at `time_ns`.  The output must not reach a sensor,
  * and the run must end.

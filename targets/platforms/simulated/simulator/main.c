@@ -36,7 +36,8 @@ static int usage(const epg_system_t *system, const char *problem, const char *wo
             "  --seed NUMBER               seed of the random numbers (default: 0)\n"
             "  --setpoints TARGET=FILE     reads setpoints of a target from a CSV file with rows time,topic,value\n"
             "  --events FILE               reads failures of targets from a CSV file with rows time,target,event\n"
-            "  --trace FOLDER              writes all signals into FOLDER/TARGET.csv, one row per control cycle\n"
+            "  --trace FOLDER              writes all signals into FOLDER/TARGET.csv, one row per control cycle, and\n"
+            "                              those of the system's plant into FOLDER/plant.csv, one row per step\n"
             "  --topics FILE               writes all published values\n"
             "  --statistics FILE           writes the states of the targets at the end, as JSON\n"
             "  --interface                 prints the names of targets, topics and signals, for programs\n",
@@ -99,13 +100,29 @@ static int take(simulation_t *simulation, options_t *options, const char *option
     return usage(simulation->system, "there is no option ", option);
 }
 
-static bool open_trace(member_t *member, const options_t *options)
+static bool open_plant(simulation_t *simulation, const char *folder)
+{
+    const epg_system_plant_t *facts = simulation->system->plant;
+    simulation->plant.facts = facts;
+    return plant_open(&simulation->plant, folder, facts->file, facts->step_ns, facts->divisor, facts->starts_by_step);
+}
+
+/** Opens FOLDER/`name`.csv.  Returns NULL after a message. */
+static FILE *open_csv(const options_t *options, const char *name)
 {
     char path[4096];
-    snprintf(path, sizeof path, "%s/%s.csv", options->trace, member->facts->name);
-    member->file = fopen(path, "wb");
-    if (member->file == NULL) {
+    snprintf(path, sizeof path, "%s/%s.csv", options->trace, name);
+    FILE *file = fopen(path, "wb");
+    if (file == NULL) {
         fprintf(stderr, "%s: error: cannot write this file\n", path);
+    }
+    return file;
+}
+
+static bool open_trace(member_t *member, const options_t *options)
+{
+    member->file = open_csv(options, member->facts->name);
+    if (member->file == NULL) {
         return false;
     }
     const uint64_t cycles = options->duration_ns / member->unit->host->target->application->period_ns + 1U;
@@ -139,8 +156,11 @@ static bool write_statistics(const simulation_t *simulation, const char *path)
 static int run(simulation_t *simulation, options_t *options, int argc, char **argv)
 {
     const epg_system_t *system = simulation->system;
+    if (system->plant != NULL && !open_plant(simulation, options->folder)) {
+        return FAILED;
+    }
     for (size_t i = 0; i < system->target_count; i++) {
-        if (!member_open(&simulation->members[i], &system->targets[i], options->folder)) {
+        if (!member_open(&simulation->members[i], &system->targets[i], options->folder, &simulation->plant)) {
             return FAILED;
         }
     }
@@ -162,6 +182,13 @@ static int run(simulation_t *simulation, options_t *options, int argc, char **ar
         if (!open_trace(&simulation->members[i], options)) {
             return FAILED;
         }
+    }
+    if (options->trace != NULL && system->plant != NULL) {
+        FILE *file = open_csv(options, "plant");
+        if (file == NULL) {
+            return FAILED;
+        }
+        plant_record(&simulation->plant, file);
     }
     if (options->topics != NULL) {
         simulation->topics = fopen(options->topics, "wb");
@@ -200,6 +227,10 @@ int epg_system_main(const epg_system_t *system, int argc, char **argv)
                 status = FAILED;
             }
         }
+    }
+    plant_close(&simulation.plant);
+    if (simulation.plant.file != NULL && fclose(simulation.plant.file) != 0) {
+        status = FAILED;
     }
     if (simulation.topics != NULL && fclose(simulation.topics) != 0) {
         status = FAILED;

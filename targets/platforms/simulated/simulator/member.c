@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A target of a system while it is simulated, with its plant.
+ * A target of a system while it is simulated.
  */
 #include "member.h"
 
@@ -47,64 +47,44 @@ static void actuate(member_t *member)
     ports->actuate();
     for (size_t i = 0; i < ports->driven_count; i++) {
         const epg_unit_port_t *port = &ports->driven[i];
-        memcpy((char *)member->plant->inputs + port->offset, (const char *)ports->inputs + port->offset, port->size);
+        char *inputs = member->plant->model->inputs;
+        memcpy(inputs + port->offset, (const char *)ports->inputs + port->offset, port->size);
     }
 }
 
 static void sense(const member_t *member)
 {
     if (member->plant != NULL) {
-        memcpy(member->unit->plant->outputs, member->plant->outputs, member->unit->plant->outputs_size);
+        memcpy(member->unit->plant->outputs, member->plant->model->outputs, member->unit->plant->outputs_size);
         member->unit->plant->sense();
+    }
+}
+
+static void advance(member_t *member, uint64_t time_ns)
+{
+    if (member->plant != NULL) {
+        plant_advance(member->plant, time_ns);
     }
 }
 
 /* Start and end -------------------------------------------------------------------------------------------------- */
 
-static bool load(module_t *module, const char *folder, const char *file, const char *symbol)
-{
-    char path[4096];
-    snprintf(path, sizeof path, "%s/%s", folder, file);
-    return module_load(module, path, symbol);
-}
-
-static bool has_version(const member_t *member, uint32_t version)
-{
-    if (version != EPG_UNIT_VERSION) {
-        fprintf(stderr, "%s: error: its files are of another version of EPG: build it again\n", member->facts->name);
-    }
-    return version == EPG_UNIT_VERSION;
-}
-
 static bool load_unit(member_t *member)
 {
-    if (!load(&member->module, member->folder, member->facts->unit, EPG_UNIT_SYMBOL)) {
+    if (!module_load(&member->module, member->folder, member->facts->unit, EPG_UNIT_SYMBOL)) {
         return false;
     }
     member->unit = member->module.symbol;
-    return has_version(member, member->unit->version);
+    return module_has_version(member->facts->unit, member->unit->version);
 }
 
-/** Loads the plant and sets it to its state at time 0. */
 static bool load_plant(member_t *member)
 {
-    if (!load(&member->plant_module, member->folder, member->facts->plant, EPG_PLANT_SYMBOL)) {
-        return false;
-    }
-    member->plant = member->plant_module.symbol;
-    if (!has_version(member, member->plant->version)) {
-        return false;
-    }
-    member->plant->init();
-    member->plant_model =
-        (epg_plant_t){.steps_per_period = member->unit->plant->steps_per_period, .step = member->plant->step};
-    member->plant_run = (epg_plant_run_t){.plant = &member->plant_model,
-                                          .period_ns = member->unit->host->target->application->period_ns};
-    if (member->unit->plant->starts_by_step) {
-        member->plant->step();
-        member->plant_run.steps = 1;
-    }
-    return true;
+    const epg_unit_plant_t *ports = member->unit->plant;
+    member->plant = &member->own_plant;
+    return plant_open(member->plant, member->folder, member->facts->plant,
+                      member->unit->host->target->application->period_ns, ports->steps_per_period,
+                      ports->starts_by_step);
 }
 
 /** Starts the application, which reads the sensors. */
@@ -117,7 +97,7 @@ static void start(member_t *member)
 
 void member_die(member_t *member, uint64_t time_ns)
 {
-    epg_plant_advance(&member->plant_run, time_ns);
+    advance(member, time_ns);
     member->unit->host->target->application->safe();
     actuate(member);
     member->state = MEMBER_IS_DEAD;
@@ -145,9 +125,10 @@ bool member_restart(member_t *member, uint64_t time_ns)
     return true;
 }
 
-bool member_open(member_t *member, const epg_system_target_t *facts, const char *folder)
+bool member_open(member_t *member, const epg_system_target_t *facts, const char *folder, plant_t *plant)
 {
     *member = (member_t){.facts = facts, .folder = folder, .started_ns = facts->start_ns};
+    member->plant = facts->in_plant ? plant : NULL;
     if (!load_unit(member) || (facts->plant != NULL && !load_plant(member))) {
         return false;
     }
@@ -164,7 +145,7 @@ bool member_open(member_t *member, const epg_system_target_t *facts, const char 
 void member_cycle(member_t *member, uint64_t number)
 {
     const uint64_t time_ns = member_tick_ns(member, number);
-    epg_plant_advance(&member->plant_run, time_ns);
+    advance(member, time_ns);
     sense(member);
     member->unit->cycle(number * member->unit->host->target->application->period_ns, 0);
     actuate(member);
@@ -180,5 +161,5 @@ void member_close(member_t *member)
     free(member->received);
     free(member->announced);
     module_unload(&member->module);
-    module_unload(&member->plant_module);
+    plant_close(&member->own_plant);
 }

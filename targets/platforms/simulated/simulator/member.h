@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A target of a system while it is simulated, with its plant.
+ * A target of a system while it is simulated.
  */
 #ifndef EPG_SYSTEM_MEMBER_H
 #define EPG_SYSTEM_MEMBER_H
@@ -14,6 +14,7 @@
 #include "../../host/src/trace.h"
 #include "epg/system.h"
 #include "module.h"
+#include "plant.h"
 
 typedef enum member_state {
     MEMBER_RUNS,
@@ -29,11 +30,9 @@ typedef struct member {
     uint64_t started_ns; /**< true time of the first tick of this life */
     const char *folder;  /* of the shared objects */
     module_t module;
-    module_t plant_module;
     const epg_unit_t *unit;
-    const epg_plant_module_t *plant; /**< NULL: it has none */
-    epg_plant_t plant_model;         /**< the functions that epg_plant_advance() calls */
-    epg_plant_run_t plant_run;
+    plant_t own_plant;
+    plant_t *plant;    /**< its own one, or that of the system; NULL: it has none */
     double *monitored; /**< the newest monitoring values */
     double *published; /**< the values of the newest messages of publications on change */
     double *received;  /**< room for the values of a message */
@@ -43,8 +42,11 @@ typedef struct member {
     FILE *file;
 } member_t;
 
-/** Loads target and plant, and starts the target.  Returns false after a message. */
-bool member_open(member_t *member, const epg_system_target_t *facts, const char *folder);
+/**
+ * Loads the target, and its own plant if it has one, and starts the target.  `plant` is the plant of the system; NULL:
+ * there is none.  Returns false after a message.
+ */
+bool member_open(member_t *member, const epg_system_target_t *facts, const char *folder, plant_t *plant);
 
 /** Ends a target at the true time `time_ns`, as a loss of its power does.  Its plant goes on. */
 void member_die(member_t *member, uint64_t time_ns);

@@ -45,8 +45,10 @@ static int copy_of(const char *path)
     return to;
 }
 
-bool module_load(module_t *module, const char *path, const char *symbol)
+bool module_load(module_t *module, const char *folder, const char *file_name, const char *symbol)
 {
+    char path[4096];
+    snprintf(path, sizeof path, "%s/%s", folder, file_name);
     *module = (module_t){0};
     const int file = copy_of(path);
     if (file < 0) {
@@ -63,6 +65,14 @@ bool module_load(module_t *module, const char *path, const char *symbol)
         return false;
     }
     return true;
+}
+
+bool module_has_version(const char *file, uint32_t version)
+{
+    if (version != EPG_UNIT_VERSION) {
+        fprintf(stderr, "%s: error: this file is of another version of EPG: build it again\n", file);
+    }
+    return version == EPG_UNIT_VERSION;
 }
 
 void module_unload(module_t *module)

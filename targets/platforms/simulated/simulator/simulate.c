@@ -310,7 +310,11 @@ bool simulate(simulation_t *simulation)
     }
     event_t event;
     while (good && queue_take(&simulation->queue, &event)) {
-        good = happen(simulation, &event);
+        good = happen(simulation, &event) && !simulation->plant.has_diverged;
+    }
+    if (good && simulation->plant.model != NULL) {
+        plant_advance(&simulation->plant, simulation->end_ns - 1U);
+        good = !simulation->plant.has_diverged;
     }
     queue_free(&simulation->queue);
     return good;

@@ -35,6 +35,7 @@ typedef struct simulation {
     const epg_system_t *system;
     uint64_t end_ns; /**< no event happens at or after this time */
     uint64_t seed;
+    plant_t plant; /**< of the system; closed if it has none */
     member_t *members;
     way_t *ways;
     failure_t *failures; /**< on the heap */
