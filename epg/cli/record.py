@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg record``: records the topics that a target publishes and subscribes to on ROS 2, as CSV files and MCAP."""
+"""``epg record``: records the topics of a target or of a system on ROS 2, as CSV files and MCAP."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from epg.cli.robot import add_robot_arguments, robot_of
+from epg.cli.robot import TARGET, add_robot_arguments, robot_of, robots_of_system
+from epg.cli.system import is_system
 from epg.diagnostics import Diagnostics
 from epg.source import Span
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_robot_arguments(parser)
+    add_robot_arguments(parser, f"{TARGET}; or a system (*.system.yaml)")
     parser.add_argument(
         "--output", type=Path, default=Path(), metavar="FOLDER", help="folder to write; default: the current folder"
     )
@@ -46,22 +47,24 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.cli.progress import Progress
     from epg.cli.report import to_json
     from epg.ros.open_source import open_source
-    from epg.ros.recorder import MCAP, SETPOINTS, TOPICS, channels_of, record
+    from epg.ros.recorder import MCAP, SETPOINTS, TOPICS, channels_of, channels_of_system, record
 
-    robot = robot_of(options, diagnostics)
+    system = is_system(options.target)
+    one = None if system else robot_of(options, diagnostics)
+    robots = robots_of_system(options, diagnostics) if system else [] if one is None else [one]
     files = [options.output / name for name in (SETPOINTS, TOPICS, *([MCAP] if options.mcap else []))]
     for file in files:
         if file.exists() and not options.force:
             diagnostics.error("file-exists", Span(str(file)), "this file exists", hint="--force overwrites it")
+    domain = _domain(options, robots, diagnostics)
     diagnostics.stop_if_errors()
-    assert robot is not None
-    channels, unknown = channels_of(robot)
+    channels, unknown = channels_of_system(robots) if system else channels_of(robots[0])
     for topic in unknown:
         message = f"'{topic.name}' is not recorded: EPG does not support the type {topic.type}"
-        diagnostics.warning("type-not-recorded", Span(str(robot.file)), message)
+        diagnostics.warning("type-not-recorded", Span(str(robots[0].file)), message)
     if options.mcap:
         bootstrap.ensure("mcap")
-    source = open_source(options.through, [channel.subscription for channel in channels], _domain(options, robot))
+    source = open_source(options.through, [channel.subscription for channel in channels], domain)
     progress = Progress(quiet=options.json)
     try:
         with _Stop() as stop:
@@ -69,10 +72,10 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     finally:
         source.close()
         progress.done()
-    for one in heard:
-        if one.messages == 0 and one.channel.file == TOPICS:  # setpoints need not be sent during a recording
-            message = f"no message was received on {one.channel.name}: {_reason(one)}"
-            diagnostics.warning("nothing-heard", Span(str(robot.file)), message)
+    for found in heard:
+        if found.messages == 0 and found.channel.file == TOPICS:  # setpoints need not be sent during a recording
+            message = f"no message was received on {found.channel.name}: {_reason(found)}"
+            diagnostics.warning("nothing-heard", Span(str(robots[0].file)), message)
     if options.json:
         data = [
             {"topic": h.channel.name, "type": h.channel.topic.type, "messages": h.messages, "rate": h.rate}
@@ -85,12 +88,18 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     return 0
 
 
-def _domain(options: argparse.Namespace, robot: Robot) -> int:
-    """The ROS domain: that of ``--domain``, else that of the target, else ROS_DOMAIN_ID, else 0."""
+def _domain(options: argparse.Namespace, robots: list[Robot], diagnostics: Diagnostics) -> int:
+    """The ROS domain: that of ``--domain``, else that of the targets, else ROS_DOMAIN_ID, else 0."""
     if options.domain is not None:
         return int(options.domain)
-    if robot.domain is not None:
-        return robot.domain
+    domains = {robot.domain for robot in robots}
+    if len(domains) > 1:
+        named = ", ".join(sorted("the default" if domain is None else str(domain) for domain in domains))
+        message, hint = f"its targets are in several domains: {named}", "choose one of them: --domain N"
+        diagnostics.error("domain-mismatch", Span(str(options.target)), message, hint=hint)
+    domain = next(iter(domains), None)
+    if domain is not None:
+        return domain
     environment = os.environ.get("ROS_DOMAIN_ID", "")
     return int(environment) if environment.isdigit() else 0
 

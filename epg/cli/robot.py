@@ -10,6 +10,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from epg.cli.arguments import user_roots
+from epg.cli.system import read_system
 from epg.diagnostics import Diagnostics
 from epg.source import Span
 
@@ -17,8 +19,11 @@ if TYPE_CHECKING:
     from epg.ros.robot import Robot
 
 
-def add_robot_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("target", type=Path, metavar="TARGET", help="<name>.json of a target, or its build folder")
+TARGET = "<name>.json of a target, or its build folder"
+
+
+def add_robot_arguments(parser: argparse.ArgumentParser, help: str = TARGET) -> None:
+    parser.add_argument("target", type=Path, metavar="TARGET", help=help)
     parser.add_argument("--board", metavar="SERIAL", help="serial number of the board, if names contain $serial")
     parser.add_argument("--namespace", help="namespace of the node, if it was changed on the console")
     parser.add_argument("--node", help="name of the node, if it was changed on the console")
@@ -45,10 +50,36 @@ def robot_of(options: argparse.Namespace, diagnostics: Diagnostics) -> Robot | N
         robot = replace(robot, namespace=f"/{options.namespace.strip('/')}" if options.namespace.strip("/") else "")
     if options.node:
         robot = replace(robot, node=options.node)
+    _check_serial(robot, "add --board <serial number>", diagnostics)
+    return robot
+
+
+def robots_of_system(options: argparse.Namespace, diagnostics: Diagnostics) -> list[Robot]:
+    """The targets of the system of the command, with the serial numbers of their boards in their names."""
+    from epg.system.robots import boards_of, robots_of
+
+    checked = read_system(options.target, user_roots(), diagnostics)
+    for option in ("board", "namespace", "node"):
+        value = getattr(options, option)
+        if value is not None:
+            place = Span.of_argument(value, f"--{option}")
+            hint = "write it into the file of the system"
+            diagnostics.error("several-targets", place, f"--{option} is for one target, not for a system", hint=hint)
+    diagnostics.stop_if_errors()
+    assert checked is not None
+    boards = boards_of(checked)
+    robots = [
+        robot.with_serial(boards[robot.name][0]) if robot.name in boards else robot for robot in robots_of(checked)
+    ]
+    for robot in robots:
+        _check_serial(robot, f"add the 'serial' of '{robot.name}' to this file", diagnostics)
+    return robots
+
+
+def _check_serial(robot: Robot, hint: str, diagnostics: Diagnostics) -> None:
     if robot.has_serial_in_names:
         message = f"the name of the node, '{robot.full_node}', contains the serial number of its board"
-        diagnostics.error("board-unknown", Span(str(robot.file)), message, hint="add --board <serial number>")
-    return robot
+        diagnostics.error("board-unknown", Span(str(robot.file)), message, hint=hint)
 
 
 def write_files(folder: Path, files: Mapping[str, str], force: bool, diagnostics: Diagnostics) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Records the topics of a target, in the format of the host platform's files.
+"""Records the topics of a target or of a system, in the format of the host platform's files.
 
 ``topics.csv`` holds the values that the target published, and ``setpoints.csv`` those that were sent to it.  A host
 executable can read ``setpoints.csv`` (``--setpoints``).  Times are in seconds since the start of the recording, by the
@@ -14,7 +14,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TextIO
 
@@ -86,6 +86,35 @@ def channels_of(robot: Robot) -> tuple[list[Channel], list[RobotTopic]]:
             else:
                 channels.append(Channel(topic, robot.topic(topic), file, library))
     return channels, unknown
+
+
+def channels_of_system(robots: Sequence[Robot]) -> tuple[list[Channel], list[RobotTopic]]:
+    """The same for all targets of a system.
+
+    A topic is recorded once.  It is a setpoint if no target publishes it.  The values have the names that the
+    simulation of the system gives them: an absolute topic keeps its name, the target comes before another one.
+    """
+    found = [channels_of(_named_by_target(robot)) for robot in robots]
+    channels: dict[str, Channel] = {}
+    for channel in (channel for several, _ in found for channel in several):
+        if channel.name not in channels or channel.file == TOPICS:
+            channels[channel.name] = channel
+    setpoints_first = sorted(channels.values(), key=lambda channel: channel.file)
+    return setpoints_first, [topic for _, several in found for topic in several]
+
+
+def _named_by_target(robot: Robot) -> Robot:
+    """The target with its name before the names of its values, except those of absolute topics."""
+
+    def named(topic: RobotTopic) -> RobotTopic:
+        absolute = topic.name.startswith("/")
+        return topic if absolute else replace(topic, values=tuple(f"{robot.name}/{value}" for value in topic.values))
+
+    return replace(
+        robot,
+        subscriptions=tuple(named(topic) for topic in robot.subscriptions),
+        publications=tuple(named(topic) for topic in robot.publications),
+    )
 
 
 def record(

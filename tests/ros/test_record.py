@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import csv
 import json
+import shutil
 import signal
 import struct
 import subprocess
@@ -134,6 +135,46 @@ def test_every_type(net: Network, tmp_path: Path, capsys: pytest.CaptureFixture[
         for field, value in fields.items():
             expected = [float(value(n)) for n in range(first, first + len(columns[field]))]
             assert columns[field] == expected, f"{name} {field}: nothing lost, nothing changed"
+
+
+SYSTEM = """version: 1
+system: two_jiwys
+targets:
+  leader: {tcf: rpi_pico_freertos_jiwy, model: model, bindings: jiwy.bindings.yaml}
+  follower: {tcf: nucleo_h743zi_freertos_jiwy, model: model, bindings: jiwy.bindings.yaml, count: 2}
+connections:
+  - {from: leader/pan_publisher, to: follower/pan_subscriber}
+  - {from: leader/tilt_publisher, to: follower/tilt_subscriber, qos: reliable}
+world: {sends: [leader/pan_subscriber, leader/tilt_subscriber]}
+"""
+
+
+def test_a_system(net: Network, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Each topic of the system is recorded once, also if several targets receive it."""
+    shutil.copytree(ROOT / "examples/jiwy/model", tmp_path / "model")
+    shutil.copy(ROOT / "examples/jiwy/jiwy.bindings.yaml", tmp_path)
+    system = tmp_path / "two_jiwys.system.yaml"
+    system.write_text(SYSTEM, encoding="utf-8")
+    sent = [
+        f"{target}/{axis}_publisher" for target in ("leader", "follower_1", "follower_2") for axis in ("pan", "tilt")
+    ]
+    asked = [f"leader/{axis}_subscriber" for axis in ("pan", "tilt")]
+    with publishing(net, {f"rt/two_jiwys/{name}": "std_msgs/msg/Float64" for name in (*sent, *asked)}):
+        assert record(system, "--output", tmp_path / "run", "--duration", "1.5", "--mcap") == 0
+    assert capsys.readouterr().err == ""
+    connected = [f"/two_jiwys/{name}" for name in sent[:2]]  # the names that the simulation of the system writes
+    for file, names in (("topics.csv", [*connected, *sent[2:]]), ("setpoints.csv", [f"/two_jiwys/{n}" for n in asked])):
+        recorded = rows(tmp_path / "run" / file)
+        assert {name for _, name, _ in recorded} == set(names)
+        for name in names:
+            values = [value for _, other, value in recorded if other == name]
+            first = round(3 * values[0])
+            assert len(values) > 30 and values == [number / 3 for number in range(first, first + len(values))]
+    with (tmp_path / "run/recording.mcap").open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary and {channel.topic for channel in summary.channels.values()} == {
+        f"/two_jiwys/{name}" for name in (*sent, *asked)
+    }
 
 
 def stamped(clock: Callable[[], int]) -> tuple[str, Callable[[int], Any]]:
