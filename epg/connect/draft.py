@@ -14,7 +14,7 @@ from pathlib import Path
 
 from epg.connect.files import Snapshot
 from epg.edit.bindings import CannotEdit, End, set_ends
-from epg.edit.tcf import set_extends
+from epg.edit.tcf import leave_out, set_extends
 from epg.models.model import Model
 
 
@@ -36,7 +36,15 @@ class SetExtends:
     name: str
 
 
-Operation = tuple["SetEnds | SetExtends", ...]
+@dataclass(frozen=True)
+class LeaveOut:
+    """Removes parts of the file that the ``.tcf`` extends: lists of keys below ``components``."""
+
+    parts: tuple[tuple[str, ...], ...]
+
+
+Change = SetEnds | SetExtends | LeaveOut
+Operation = tuple[Change, ...]
 """All changes of one user action; undo and redo treat them as one."""
 
 
@@ -144,12 +152,16 @@ class Draft:
             )
         return "".join(f"{line}\n" for line in lines)
 
-    def _applied(self, texts: Texts, operation: Iterable[SetEnds | SetExtends], model: Model | None) -> Texts:
+    def _applied(self, texts: Texts, operation: Iterable[Change], model: Model | None) -> Texts:
         for change in operation:
-            if isinstance(change, SetExtends):
-                if texts.tcf is None:
-                    raise CannotEdit(f"'{self.tcf.path.name}' cannot be read")
-                texts = replace(texts, tcf=set_extends(texts.tcf, self.tcf.path.name, change.name))
+            if not isinstance(change, SetEnds):
+                file, before = self.tcf.path.name, texts.tcf
+                if before is None:
+                    raise CannotEdit(f"'{file}' cannot be read")
+                if isinstance(change, SetExtends):
+                    texts = replace(texts, tcf=set_extends(before, file, change.name))
+                else:
+                    texts = replace(texts, tcf=leave_out(before, file, change.parts))
             elif texts.bindings is None or model is None:
                 what = "the bindings" if texts.bindings is None else "the model"
                 raise CannotEdit(f"{what} must be correct before ports can be connected: see the messages")

@@ -14,6 +14,7 @@ from epg.connect.draft import Draft, Operation
 from epg.connect.files import Snapshot, Watch, read_snapshot, save
 from epg.connect.loaded import Models, load, tcf_path
 from epg.connect.projects import Job
+from epg.connect.unused import unused_parts
 from epg.connect.view import view_of
 from epg.diagnostics import Diagnostics
 from epg.documents.yaml_file import parse_yaml
@@ -100,12 +101,17 @@ class Editor:
         self._load()
         return True
 
+    @property
+    def owns_tcf(self) -> bool:
+        """False if the target uses a ``.tcf`` of EPG itself, which EPG does not change."""
+        return not any(root / "robots" in self._tcf_path.parents for root in self.job.request.roots)
+
     def project(self) -> Project:
         """The configuration that the project's own ``.tcf`` extends, and the reason if that cannot be changed."""
         configuration, chain = self.loaded.parts.configuration, self.loaded.chain
         target = configuration.target if configuration is not None else None
         path = self._tcf_path
-        if any(root / "robots" in path.parents for root in self.job.request.roots):
+        if not self.owns_tcf:
             hint = f"write a .tcf with 'extends: {path.name}', and name your file in CMakeLists.txt"
             return Project(path.stem, f"this project uses {path.name}, which EPG does not change: {hint}", target)
         extends = chain[0].node.get("extends") if chain else None
@@ -116,12 +122,22 @@ class Editor:
             return Project(chosen, f"{path.name} sets 'target' itself: change or remove that key", target)
         return Project(chosen, "", target)
 
+    def unused_parts(self) -> list[list[str]]:
+        """The parts of the robot that no port uses, as soon as all ports are connected, or unconnected on purpose."""
+        model, configuration = self.loaded.parts.model, self.loaded.parts.configuration
+        if model is None or configuration is None or not self.owns_tcf:
+            return []
+        if not {port.name for port in (*model.inputs, *model.outputs)} <= set(self.loaded.bound):
+            return []
+        return unused_parts(configuration, self.loaded.references)
+
     def show(self) -> dict[str, Any]:
         """The part of the state that belongs to this target."""
         why_not = self._why_not()
         return {
             "project": {"name": self.job.request.name, "folder": str(self._folder()), "files": self._files()},
             **view_of(self.loaded),
+            "unused": [".".join(part) for part in self.unused_parts()],
             "draft": {
                 "changed": self.draft.changed,
                 "can_undo": self.draft.can_undo,

@@ -15,6 +15,7 @@ from epg.diagnostics import Diagnostic, Diagnostics
 from epg.documents.tcf import TcfFile, find_tcf, load_tcf_chain
 from epg.documents.text_file import read_text
 from epg.documents.yaml_file import parse_yaml
+from epg.edit.bindings import ends_of
 from epg.models import Model, load_model
 from epg.models.folders import searched_folders
 from epg.models.neighbours import Neighbours
@@ -65,6 +66,13 @@ class Loaded:
         """The ports that the bindings name."""
         sections = (self.root.get(section) for section in ("inputs", "outputs")) if self.root is not None else ()
         return tuple(name for section in sections if section is not None for name, _ in section.items())
+
+    @cached_property
+    def references(self) -> frozenset[str]:
+        """The component ports at which wires end, as the bindings name them."""
+        names = ((section, name) for section in ("inputs", "outputs") for name in self.bound)
+        ends = (ends_of(self.root, section, name) for section, name in names if self.root is not None)
+        return frozenset(end.reference for found in ends for end in found or ())
 
     @cached_property
     def places(self) -> Places:

@@ -20,7 +20,7 @@ import epg
 from epg.connect.body import Body, Refused, bodies, boolean, ends, names, text
 from epg.connect.configurations import Configurations
 from epg.connect.creation import create
-from epg.connect.draft import SetEnds, SetExtends
+from epg.connect.draft import LeaveOut, SetEnds, SetExtends
 from epg.connect.editor import Editor
 from epg.connect.excerpt import excerpt
 from epg.connect.files import Unsavable
@@ -70,6 +70,7 @@ class Session:
             "rewire": self._rewire,
             "disconnect": self._disconnect,
             "accept": self._accept,
+            "leave_out": self._leave_out,
             "undo": lambda body: self._opened().undo(),
             "redo": lambda body: self._opened().redo(),
             "save": self._save,
@@ -192,6 +193,13 @@ class Session:
                 raise Refused(f"there is no proposal for '{name}'", "connect it by hand")
         if wanted:
             self._opened().edit(tuple(SetEnds(name, (End(proposals[name]),)) for name in wanted))
+
+    def _leave_out(self, body: Body) -> None:
+        """Removes all parts of the robot that no port uses."""
+        parts = self._opened().unused_parts()
+        if not parts:
+            raise Refused("no part of the robot is unused", "connect all ports first", 409)
+        self._opened().edit((LeaveOut(tuple(tuple(part) for part in parts)),))
 
     def _save(self, body: Body) -> None:
         self._opened().save(anyway=boolean(body, "anyway"))

@@ -10,8 +10,9 @@ There are four qualities of a match, tried in this order:
 4. A model port and a topic are left that share a word with each other, and with no other port or topic that is left:
    ``pan`` and ``pan_publisher``.
 
-A match must be the only one of its quality.  The first two, and the third for topics, are written into new bindings.
-The others are guesses: the user must accept them, because a weak match must never move hardware.
+A match must be the only one of its quality.  The first two are written into new bindings, and the third for topics
+whose names share a word with the port's.  The others are guesses: the user must accept them, because a weak match must
+never move hardware.
 """
 
 from __future__ import annotations
@@ -71,7 +72,7 @@ def match_ports(model: Model, components: Mapping[str, Component]) -> dict[str, 
             if best is not None:
                 sure[port.name] = best
         by_role = _by_role(_open(ports, sure), _without(ends, sure.values()), ends)
-        sure |= {name: end for name, end in by_role.items() if end.is_topic}
+        sure |= {name: end for name, end in by_role.items() if end.is_topic and _shares_word(name, end)}
         known = {**by_role, **sure}
         by_word = _by_word(_open(ports, known), [end for end in _without(ends, known.values()) if end.is_topic])
         guesses = {**by_word, **by_role}
@@ -137,12 +138,13 @@ def _by_role(ports: Sequence[Port], free: Sequence[_End], ends: Sequence[_End]) 
     return {name: end for name, end in found.items() if count[end.reference] == 1}
 
 
+def _shares_word(name: str, end: _End) -> bool:
+    return bool(_words(name) & _words(end.component.name))
+
+
 def _by_word(ports: Sequence[Port], topics: Sequence[_End]) -> dict[str, _End]:
     """The ports that share a word with a topic, where neither shares one with another topic or port."""
-    near = {
-        port.name: [end for end in topics if end.port.default and _words(port.name) & _words(end.component.name)]
-        for port in ports
-    }
+    near = {port.name: [end for end in topics if end.port.default and _shares_word(port.name, end)] for port in ports}
     count = Counter(end.reference for found in near.values() for end in found)
     return {name: found[0] for name, found in near.items() if len(found) == 1 and count[found[0].reference] == 1}
 

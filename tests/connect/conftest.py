@@ -26,6 +26,27 @@ def new_project(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
+def one_axis(tmp_path: Path) -> Path:
+    """A new project of a model with one axis for JIWY, which has two."""
+    model = tmp_path / "pan"
+    model.mkdir()
+    (model / "model.yaml").write_text(
+        "version: 1\nstep: 1 ms\nheader: pan.h\nsources: [pan.c]\ntypes: {inputs: in_t, outputs: out_t}\n"
+        "functions: {step: pan}\ninputs: {position_pan: {unit: rad}, setpoint_pan: {unit: rad}}\n"
+        "outputs: {pwm_pan: {}}\n"
+    )
+    (model / "pan.h").write_text(
+        "typedef struct { double position_pan, setpoint_pan; } in_t;\ntypedef struct { double pwm_pan; } out_t;\n"
+        "void pan(const in_t *in, out_t *out);\n"
+    )
+    (model / "pan.c").write_text(
+        '#include "pan.h"\nvoid pan(const in_t *in, out_t *out) { out->pwm_pan = in->setpoint_pan; }\n'
+    )
+    write_project(ProjectRequest("robot", tmp_path / "robot", "rpi_pico_bare_metal_jiwy", model), Diagnostics())
+    return tmp_path / "robot"
+
+
+@pytest.fixture
 def project(new_project: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(new_project, tmp_path / "a robot"))
 

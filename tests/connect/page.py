@@ -58,7 +58,7 @@ class Page:
     def state(self, after: int = 0) -> dict[str, Any]:
         return self.json(f"api/state?after={after}")
 
-    def until(self, wanted: Any, seconds: float = 15) -> dict[str, Any]:
+    def until(self, wanted: Any, seconds: float = 60) -> dict[str, Any]:
         """The first state for which ``wanted`` is true; like the page, it asks for the next state each time."""
         state = self.state()
         end = time.monotonic() + seconds

@@ -74,6 +74,29 @@ def test_messages_stand_at_the_port(page: Page) -> None:
     assert [each["port"] for each in state["diagnostics"] if each["id"] == "wrong-direction"] == ["position_pan"]
 
 
+def test_parts_that_no_port_uses_are_left_out(one_axis: Path) -> None:
+    """A controller of one axis on a robot of two: without this, homing is an error in a file of EPG."""
+    with serving(session_of(one_axis)) as page:
+        state = page.state()
+        assert {each["id"] for each in state["diagnostics"] if each["severity"] == "error"} == {"needs-bound"}
+        assert state["unused"] == [
+            *("encoder_tilt", "pwm_tilt", "guard_tilt", "tilt_subscriber", "pan_publisher", "tilt_publisher"),
+            "guard_pan.homing",
+        ]
+        state = page.post("leave_out")
+        assert state["diagnostics"] == [] and state["unused"] == []
+        assert [each["name"] for each in state["components"]] == [
+            "encoder_pan",
+            "pwm_pan",
+            "guard_pan",
+            "pan_subscriber",
+        ]
+        page.post("save")
+        assert "components:\n  encoder_tilt: null\n" in (one_axis / "robot.tcf").read_text()
+        with pytest.raises(Denied, match="no part of the robot is unused"):
+            page.post("leave_out")
+
+
 def test_outputs_can_have_several_ends_or_none(page: Page, bindings: Path) -> None:
     state = page.connect("pan_logging", "pan_publisher", "tilt_publisher")
     assert [end["reference"] for end in state["wires"]["pan_logging"]] == ["pan_publisher", "tilt_publisher"]

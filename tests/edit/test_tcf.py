@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Changing the file that a .tcf extends: one line changes, or one line is added."""
+"""Changing the file that a .tcf extends, and leaving out parts of it: all other lines stay."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 import epg.edit.tcf
 from epg.diagnostics import Diagnostics
 from epg.documents.yaml_file import parse_yaml
-from epg.edit.tcf import set_extends
+from epg.edit.tcf import leave_out, set_extends
 from epg.edit.yaml_edit import CannotEdit
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -76,3 +76,30 @@ def test_a_text_that_needs_an_editor(what: str) -> None:
 
 def test_docstring() -> None:
     assert doctest.testmod(epg.edit.tcf).failed == 0
+
+
+LEFT_OUT = {
+    "no components yet": (
+        "version: 1\nextends: a.tcf  # mine\n# tail\n",
+        "version: 1\nextends: a.tcf  # mine\ncomponents:\n  tilt: null\n  guard: {homing: null}\n# tail\n",
+    ),
+    "other components": (
+        "components:\n    pan: {invert: true}   # turned\nnode: x",
+        "components:\n    pan: {invert: true}   # turned\n    tilt: null\n    guard: {homing: null}\nnode: x",
+    ),
+    "both are there": (
+        "components:\n  tilt:\n    invert: true\n  guard:\n    stall: null\n    homing: {time: 1 s}\n",
+        "components:\n  tilt: null\n  guard:\n    stall: null\n    homing: null\n",
+    ),
+    "in braces": (
+        "{version: 1, components: {guard: {stall: null}}}",
+        "{version: 1, components: {guard: {stall: null, homing: null}, tilt: null}}",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", LEFT_OUT)
+def test_parts_are_left_out(what: str) -> None:
+    before, after = LEFT_OUT[what]
+    assert leave_out(before, "robot.tcf", [["tilt"], ["guard", "homing"]]) == after
+    assert leave_out(after, "robot.tcf", [["tilt"], ["guard", "homing"]]) == after

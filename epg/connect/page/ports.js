@@ -2,15 +2,16 @@
 // The model in the middle of the page: its inputs with their sources, and its outputs with their sinks.
 
 import { editConversion } from "./conversion.js";
-import { h, id } from "./dom.js";
+import { h, id, plural } from "./dom.js";
 import { handle, match, modelLabel } from "./handles.js";
 import { icon } from "./icons.js";
 import { inline, isError } from "./problems.js";
-import { attempt, change, ui } from "./ui.js";
+import { current } from "./server.js";
+import { attempt, change, say, ui } from "./ui.js";
 import { disconnect, endsOf, fits, isUnconnected, replaceEnd, setEnds, unitMark } from "./wiring.js";
 
 export function modelHead(state) {
-  const { model, proposals } = state;
+  const { model, proposals, unused } = state;
   const count = Object.keys(proposals).length;
   return h(
     "div.model-head",
@@ -24,6 +25,12 @@ export function modelHead(state) {
         { onclick: acceptAll },
         count === 1 ? "Accept 1 proposal" : `Accept all ${count} proposals`,
       ),
+    unused.length > 0 &&
+      h(
+        "button.leave-out",
+        { key: "unused", onclick: leaveOut, title: unused.join(", "), disabled: Boolean(state.draft.conflict) },
+        `Leave out ${plural(unused.length, "part")} of the robot that no port uses`,
+      ),
   );
 }
 
@@ -31,6 +38,14 @@ export function modelHead(state) {
 // gets it.
 async function acceptAll() {
   if (await attempt("accept")) document.getElementById("main").focus();
+}
+
+async function leaveOut() {
+  const count = current().unused.length;
+  if (await attempt("leave_out")) {
+    say(`${plural(count, "part")} left out. The tab Changes shows the lines of the .tcf.`);
+    document.getElementById("main").focus();
+  }
 }
 
 async function accept(name) {

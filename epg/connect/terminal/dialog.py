@@ -60,6 +60,7 @@ class _Dialog:
             return 1
         ports = ports_of(self._talk.state)
         self._ports.ask([port for port in ports if is_open(self._talk.state, port)], ports)
+        self._leave_out()
         shown = None
         while True:
             if shown != self._talk.state["wires"]:
@@ -99,6 +100,12 @@ class _Dialog:
         ports = ports_of(state)
         left = sum(is_open(state, port) for port in ports)
         self._console.say(f"{len(ports)} ports, {left} of them to connect. h lists the possible answers.")
+
+    def _leave_out(self) -> None:
+        """Offers to remove the parts of the robot that no port uses."""
+        unused = self._talk.state["unused"]
+        if unused and self._console.agree(f"no port uses {', '.join(unused)}: leave them out?"):
+            self._talk.act("leave_out", {})
 
     def _finish(self) -> int:
         """Saves and builds, if the user agrees.  Returns the exit status."""

@@ -365,6 +365,16 @@ def test_conversions_of_the_tcf_and_of_units(jiwy: Project, open_page: Open, tmp
         assert "×0.5" in page.get_by_role("dialog", name="pwm_pan → pwm_pan").inner_text()
 
 
+def test_parts_that_no_port_uses_are_left_out(browser: Any, open_page: Open, one_axis: Path) -> None:
+    with Served(one_axis) as epg:
+        page = open_page(epg.address)
+        page.get_by_role("button", name="Leave out 7 parts of the robot that no port uses").click()
+        page.get_by_text("No problems", exact=True).wait_for()
+        assert page.locator(".component-name").get_by_text("encoder_tilt").count() == 0
+        page.get_by_role("tab", name="Changes").click()
+        assert "+  guard_pan: {homing: null}" in page.get_by_role("tabpanel").inner_text()
+
+
 def test_pictures_stay_while_there_are_errors(jiwy: Project, open_page: Open) -> None:
     page = open_page(jiwy.address)
     page.get_by_role("tab", name="Application").click()
