@@ -27,6 +27,9 @@ from epg.simulate.tracking import Check, WindowResult, write_tracking
 INPUTS, TRACES = "inputs", "traces"
 """The folders of the files of single targets."""
 
+_PLANT = "plant."
+"""The beginning of the names of the signals of the system's plant."""
+
 
 @dataclass(frozen=True)
 class TargetState:
@@ -158,6 +161,10 @@ def _read_traces(scenario: Scenario, targets: Sequence[str], folder: Path) -> di
         own = [signal.partition("/")[2] for signal in scenario.signals if signal.partition("/")[0] == target]
         read = read_trace(folder / f"{target}.csv", ["enabled", *own])
         columns |= {f"{target}/{name}": values for name, values in read.items()}
+    own = [signal.removeprefix(_PLANT) for signal in scenario.signals if signal.startswith(_PLANT)]
+    if own:  # of the system's plant
+        read = read_trace(folder / "plant.csv", own)
+        columns |= {"time": read.pop("time")} | {f"{_PLANT}{name}": values for name, values in read.items()}
     return columns
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from epg.simulate import simulate_system
 from tests.cmake.project import ROOT, Project
 from tests.system.test_simulation import rows
 
@@ -264,6 +265,31 @@ def test_the_plant_goes_on_when_a_target_dies(coupled: Path) -> None:
     dead = [number for number, time in enumerate(times) if 2.0002 < time <= 3]
     assert all(force[number] == 0 for number in dead) and force[dead[0] - 1] > 0 and force[dead[-1] + 1] > 0
     assert len({position[number] for number in dead}) == len(dead)
+
+
+SCENARIO = """version: 1
+duration: 4 s
+events:
+  - {at: 2.0002 s, target: cart_1, failure: die}
+  - {at: 3 s, target: cart_1, failure: restart}
+axes:
+  carts:
+    setpoint: plant.outputs.position_1
+    position: plant.outputs.position_2
+    unit: m
+    windows: [{from: 2.1 s, until: 2.9 s, largest: 10 m}]
+"""
+
+
+def test_a_scenario_judges_the_plant(built: Project, coupled: Path, tmp_path: Path) -> None:
+    """The plant has values also while a target is dead."""
+    (tmp_path / "carts.yaml").write_text(SCENARIO)
+    result = simulate_system(built.build_folder / "coupled", tmp_path / "carts.yaml", tmp_path / "out")
+    assert result.passed
+    assert (tmp_path / "out/traces/plant.csv").read_bytes() == (coupled / "plant.csv").read_bytes()
+    times, one, two = columns(coupled / "plant.csv", "time", "outputs.position_1", "outputs.position_2")
+    inside = [number for number, time in enumerate(times) if 2.1 <= time <= 2.9]
+    assert result.windows[0].largest == max(abs(two[number] - one[number]) for number in inside) > 0
 
 
 def differences(one: Path, other: Path) -> float:

@@ -23,10 +23,22 @@ static void print_values(const epg_topic_t *topic)
     }
 }
 
+/** Prints the signals of the system's plant. */
+static void print_ports(const char *side, size_t count, const epg_system_port_t *ports)
+{
+    for (size_t i = 0; i < count; i++) {
+        printf("signal,plant.%s.%s\n", side, ports[i].name);
+    }
+}
+
 void report_interface(const simulation_t *simulation)
 {
     const epg_system_t *system = simulation->system;
     printf("system,%s\n", system->name);
+    if (system->plant != NULL) {
+        print_ports("inputs", system->plant->input_count, system->plant->inputs);
+        print_ports("outputs", system->plant->output_count, system->plant->outputs);
+    }
     for (size_t i = 0; i < system->target_count; i++) {
         const epg_host_target_t *host = simulation->members[i].unit->host;
         printf("target,%s\n", system->targets[i].name);

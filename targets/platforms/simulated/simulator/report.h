@@ -11,9 +11,9 @@
 #include "simulate.h"
 
 /**
- * Prints the names that scenarios may use.  The line `system,name` comes first.  For each target, the line
- * `target,name` comes before the lines of epg_host_print_interface().  A line `connected,name` names one of its topics
- * that another target sends.
+ * Prints the names that scenarios may use.  The line `system,name` comes first, then the signals of the system's plant.
+ * For each target, the line `target,name` comes before the lines of epg_host_print_interface().  A line `connected,name`
+ * names one of its topics that another target sends.
  */
 void report_interface(const simulation_t *simulation);
 
