@@ -102,9 +102,6 @@ def check_names(scenario: Scenario, interface: Interface, diagnostics: Diagnosti
             diagnostics.error("needs-a-system", span, message, hint="remove this, or simulate a system")
         _check_names(scenario, interface, "the target", diagnostics)
         return
-    for span in scenario.of_targets:
-        message = "the cycles of a system cannot be stalled"
-        diagnostics.error("needs-one-target", span, message, hint="let the target fail: failure: hang, target: ...")
     _check_names(scenario, interface, f"the system '{interface.system}'", diagnostics)
 
 

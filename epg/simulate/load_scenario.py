@@ -27,7 +27,7 @@ _SHAPES = {
 }
 _ACTIONS = ("enable", "setpoint", "lost", "stall", "component", "failure")
 _NEEDED = {"setpoint": "topic", "component": "level", "failure": "target"}
-_POSSIBLE = {"enable": ("target",), "lost": ("topic", "target")}
+_POSSIBLE = {"enable": ("target",), "lost": ("topic", "target"), "stall": ("target",)}
 _SIGNAL = re.compile(r"([^/]+/)?(plant\.)?(inputs|outputs)\.[^/]+")
 MAX_SETPOINTS = 2_000_000
 
@@ -52,7 +52,6 @@ class _Reader:
         self.diagnostics = diagnostics
         self.names: list[tuple[str, str, Span]] = []
         self.of_systems: list[Span] = []
-        self.of_targets: list[Span] = []
 
     def scenario(self, path: Path, root: YamlNode) -> Scenario:
         duration = self.time(root["duration"], positive=True)
@@ -82,7 +81,6 @@ class _Reader:
             ends_of=ends_of,
             names=tuple(self.names),
             of_systems=tuple(self.of_systems),
-            of_targets=tuple(self.of_targets),
         )
 
     def ends(self, node: YamlNode | None) -> tuple[str, dict[str, str]]:
@@ -164,8 +162,6 @@ class _Reader:
             name, level = str(node["component"].value), node["level"].value
             self.names.append(("input", name, node["component"].span))
             return Event(at, action, component=name, level=str(int(level)) if isinstance(level, bool) else str(level))
-        if action == "stall":
-            self.of_targets.append(node["stall"].span)
         return Event(at, action, topic, duration=self.time(node[action], positive=True), target=target)
 
     def target(self, node: YamlNode) -> str:

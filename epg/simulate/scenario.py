@@ -143,7 +143,7 @@ class Scenario:
     ``ends_of`` are the expected ends of targets of a system that differ from ``ends``.  ``interval`` is the time
     between two setpoints.  ``names`` are the names that must be compared with those of the target or the system: the
     kind ("topic", "input", "signal" or "target"), the name, and its place in the file.  ``of_systems`` are the places
-    of what only systems have, and ``of_targets`` of what they do not have.
+    of what only systems have.
     """
 
     path: Path
@@ -157,7 +157,6 @@ class Scenario:
     ends_of: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
     names: tuple[tuple[str, str, Span], ...] = ()
     of_systems: tuple[Span, ...] = ()
-    of_targets: tuple[Span, ...] = ()
 
     @property
     def signals(self) -> list[str]:

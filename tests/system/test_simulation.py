@@ -9,6 +9,7 @@ import shutil
 import struct
 import subprocess
 from bisect import bisect_left
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -142,6 +143,32 @@ def test_a_target_does_what_it_does_alone(built: Project, files: Path) -> None:
     assert abs(float(rows(trace)[-1]["inputs.position_pan"]) - 0.4) < 0.01, "the robot has moved"
 
 
+def test_late_cycles(built: Project, tmp_path: Path) -> None:
+    """Two targets are stalled at the same time.  The leader does the same as alone."""
+    stalls = "0.1,{stall}0.0004\n8.2,{stall}0.0132\n8.2125,{stall}0.002\n8.2131,{stall}0.003\n9.9991,{stall}0.1\n"
+    events = tmp_path / "events.csv"
+    ofleader = stalls.format(stall="leader,stall ")
+    events.write_text(f"time,target,event\n{ofleader}8.201,near,stall 0.05\n3,far_1,stall 0.2\n3.1,far_1,restart\n")
+    files = run(built, tmp_path / "run", "--events", str(events))
+    setpoints, trace, topics = (tmp_path / name for name in ("alone.in", "alone.csv", "topics.csv"))
+    text = SETPOINTS.format(pan="pan_subscriber", tilt="tilt_subscriber") + stalls.format(stall="$stall,")
+    setpoints.write_text(
+        "\n".join(sorted(text.splitlines(), key=lambda row: float(row.split(",")[0].replace("time", "-1")))) + "\n"
+    )
+    options: list[str | Path] = ["--quiet", "--duration", str(SECONDS), "--setpoints", setpoints, "--trace", trace]
+    subprocess.run([built.build_folder / "alone_host", *options, "--topics", topics], check=True)
+    assert trace.read_bytes() == (files / "leader.csv").read_bytes()
+    alone = [(float(row["time"]), float(row["value"])) for row in rows(topics) if row["topic"] == "pan_publisher"]
+    assert alone == sent(files, "/robots/leader/pan_publisher")
+    late = [(row["time"], row["computation"]) for row in rows(trace) if float(row["computation"]) > 0]
+    assert late == [("0.1", "0.0004"), ("8.2", "0.0132"), ("8.213", "0.005")]
+    ticks = [float(row["time"]) for row in rows(files / "near.csv")]
+    gaps = [(before, after) for before, after in pairwise(ticks) if after - before > 0.0011]
+    assert len(gaps) == 1 and 8.2 < gaps[0][0] < 8.203 and abs(gaps[0][1] - gaps[0][0] - 0.05) < 0.0011
+    lives = [row for row in rows(files / "far_1.csv") if float(row["time"]) >= 2.9995]
+    assert float(lives[0]["time"]) >= 3.1, "a cycle that is stalled ends with its life"
+
+
 def test_equal_runs_and_other_seeds(built: Project, files: Path, tmp_path: Path) -> None:
     again, other = run(built, tmp_path / "again"), run(built, tmp_path / "other", "--seed", "1")
     for name in ("leader", "near", "far_1", "far_2"):
@@ -233,7 +260,16 @@ def test_a_dead_target_sends_nothing(failures: Path, files: Path) -> None:
     ("text", "told"),
     [
         ("time,target,event\n1,ledar,die\n", ":2: error: the system has no target of this name"),
-        ("time,target,event\n1,leader,dies\n", ":2: error: an event is die, hang, restart, offline or online"),
+        (
+            "time,target,event\n1,leader,dies\n",
+            ":2: error: an event is die, hang, restart, stall SECONDS, offline or online",
+        ),
+        (
+            "time,target,event\n1,leader,die 1\n",
+            ":2: error: an event is die, hang, restart, stall SECONDS, offline or online",
+        ),
+        ("time,target,event\n1,leader,stall 0\n", ":2: error: a stall needs its seconds: 'stall 0.02'"),
+        ("time,target,event\n1,leader,stall\n", ":2: error: a stall needs its seconds: 'stall 0.02'"),
         ("time,target,event\n\nsoon,leader,die\n", ":3: error: the time must be a number of seconds"),
         ("time,target\n", ":1: error: the first line must be 'time,target,event'"),
         ("time,target,event\n1,leader\n", ":2: error: a line must have a time, a target and an event"),

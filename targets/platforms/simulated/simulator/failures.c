@@ -13,8 +13,8 @@
 enum { LONGEST_LINE = 256 };
 
 static const char *const names[] = {
-    [FAILURE_DIE] = "die",         [FAILURE_HANG] = "hang",     [FAILURE_RESTART] = "restart",
-    [FAILURE_OFFLINE] = "offline", [FAILURE_ONLINE] = "online",
+    [FAILURE_DIE] = "die",     [FAILURE_HANG] = "hang",       [FAILURE_RESTART] = "restart",
+    [FAILURE_STALL] = "stall", [FAILURE_OFFLINE] = "offline", [FAILURE_ONLINE] = "online",
 };
 
 /** Reads one line.  Returns NULL, or what is wrong. */
@@ -34,13 +34,23 @@ static const char *read_line(const epg_system_t *system, char *line, failure_t *
     if (failure->target == system->target_count) {
         return "the system has no target of this name";
     }
+    char *const blank = strchr(event + 1, ' ');
+    if (blank != NULL) {
+        *blank = '\0';
+    }
     const size_t count = sizeof names / sizeof names[0];
     size_t kind = 0;
     while (kind < count && strcmp(names[kind], event + 1) != 0) {
         kind++;
     }
     failure->kind = (failure_kind_t)kind;
-    return kind < count ? NULL : "an event is die, hang, restart, offline or online";
+    failure->duration_ns = 0;
+    if (kind == count || (kind != FAILURE_STALL && blank != NULL)) {
+        return "an event is die, hang, restart, stall SECONDS, offline or online";
+    }
+    const bool is_stall = kind == FAILURE_STALL;
+    const bool has_time = blank != NULL && epg_host_parse_time(blank + 1, &failure->duration_ns);
+    return is_stall && (!has_time || failure->duration_ns == 0) ? "a stall needs its seconds: 'stall 0.02'" : NULL;
 }
 
 static bool keep(simulation_t *simulation, const failure_t *failure)

@@ -10,6 +10,7 @@
  * | `die`     | the target loses its power: its outputs get their safe levels                            |
  * | `hang`    | its program stops: no cycles and messages, and the outputs keep their levels             |
  * | `restart` | the target starts again, with the variables of a first start; its plant goes on          |
+ * | `stall S` | the next control cycle takes S seconds; ticks in this time have no cycle                      |
  * | `offline` | messages from it and to it are lost                                                      |
  * | `online`  | the end of that                                                                          |
  */

@@ -51,12 +51,6 @@ static bool read_setpoints(member_t *member, const char *path)
     if (!epg_host_read_setpoints(path, member->unit->host, false, &member->events)) {
         return false;
     }
-    for (size_t i = 0; i < member->events.count; i++) {
-        if (member->events.events[i].kind == EPG_HOST_STALL) {
-            fprintf(stderr, "%s: error: '$stall' is not possible in the simulation of a system\n", path);
-            return false;
-        }
-    }
     return true;
 }
 

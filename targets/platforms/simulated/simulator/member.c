@@ -52,10 +52,18 @@ static void actuate(member_t *member)
     }
 }
 
-static void sense(const member_t *member)
+/** Copies the outputs of the plant, which the trace has, too. */
+static void take_outputs(const member_t *member)
 {
     if (member->plant != NULL) {
         memcpy(member->unit->plant->outputs, member->plant->model->outputs, member->unit->plant->outputs_size);
+    }
+}
+
+static void sense(const member_t *member)
+{
+    take_outputs(member);
+    if (member->plant != NULL) {
         member->unit->plant->sense();
     }
 }
@@ -113,6 +121,9 @@ bool member_restart(member_t *member, uint64_t time_ns)
     }
     member->trace.host = member->unit->host;
     member->life++;
+    member->stall_ns = 0;
+    member->is_stalled = false;
+    member->missed = 0;
     member->started_ns = time_ns;
     member->state = MEMBER_RUNS;
     for (size_t i = 0; i < member->events.count && member->events.events[i].time_ns <= time_ns; i++) {
@@ -142,14 +153,63 @@ bool member_open(member_t *member, const epg_system_target_t *facts, const char 
            member->announced != NULL;
 }
 
-void member_cycle(member_t *member, uint64_t number)
+static uint64_t period_ns(const member_t *member)
 {
-    const uint64_t time_ns = member_tick_ns(member, number);
+    return member->unit->host->target->application->period_ns;
+}
+
+/** The time of the target's clock: at a tick on time it is that of the tick, without rounding. */
+static uint64_t cycle_clock_ns(const member_t *member, uint64_t time_ns)
+{
+    const bool on_time = time_ns == member_tick_ns(member, member->tick);
+    return on_time ? member->tick * period_ns(member) : member_clock_ns(member, time_ns);
+}
+
+static void end_cycle(member_t *member, uint64_t time_ns)
+{
+    const uint64_t tick_ns = member_tick_ns(member, member->tick);
+    actuate(member);
+    epg_host_trace_add(&member->trace, tick_ns, member->begin_ns - tick_ns, time_ns - member->begin_ns);
+}
+
+/** The control cycle that is stalled, on a stack of its own. */
+static void stalled_cycle(void *context)
+{
+    member_t *member = context;
+    member->unit->cycle(member->tick * period_ns(member), cycle_clock_ns(member, member->begin_ns), member->missed,
+                        stall_wait, member->stall);
+}
+
+bool member_cycle(member_t *member, uint64_t number, uint64_t time_ns)
+{
     advance(member, time_ns);
     sense(member);
-    member->unit->cycle(number * member->unit->host->target->application->period_ns, 0);
-    actuate(member);
-    epg_host_trace_add(&member->trace, time_ns, 0, 0);
+    member->tick = number;
+    member->begin_ns = time_ns;
+    if (member->stall_ns > 0) {
+        member->is_stalled = true;
+        return stall_begin(&member->stall, stalled_cycle, member);
+    }
+    member->unit->cycle(number * period_ns(member), cycle_clock_ns(member, time_ns), member->missed, NULL, NULL);
+    end_cycle(member, time_ns);
+    return true;
+}
+
+void member_resume(member_t *member, uint64_t time_ns)
+{
+    advance(member, time_ns);
+    take_outputs(member);
+    member->is_stalled = false;
+    stall_end(member->stall, member_clock_ns(member, time_ns));
+    end_cycle(member, time_ns);
+}
+
+uint64_t member_next_tick(member_t *member, uint64_t time_ns)
+{
+    const uint64_t due = cycle_clock_ns(member, time_ns) / period_ns(member);
+    const uint64_t next = due > member->tick + 1U ? due : member->tick + 1U;
+    member->missed = (uint32_t)(next - member->tick - 1U);
+    return next;
 }
 
 void member_close(member_t *member)
@@ -160,6 +220,7 @@ void member_close(member_t *member)
     free(member->published);
     free(member->received);
     free(member->announced);
+    stall_free(member->stall);
     module_unload(&member->module);
     plant_close(&member->own_plant);
 }

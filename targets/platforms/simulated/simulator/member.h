@@ -15,6 +15,7 @@
 #include "epg/system.h"
 #include "module.h"
 #include "plant.h"
+#include "stall.h"
 
 typedef enum member_state {
     MEMBER_RUNS,
@@ -25,8 +26,14 @@ typedef enum member_state {
 typedef struct member {
     const epg_system_target_t *facts;
     member_state_t state;
-    bool offline;        /**< its messages are lost, and those to it */
-    uint32_t life;       /**< number of restarts */
+    bool offline;      /**< its messages are lost, and those to it */
+    uint32_t life;     /**< number of restarts */
+    uint64_t stall_ns; /**< the next control cycle takes this time */
+    stall_t *stall;    /**< the cycle that is stalled; on the heap, NULL: there was none */
+    bool is_stalled;
+    uint64_t tick;       /**< number of the tick of the present cycle */
+    uint64_t begin_ns;   /**< true time at which it has begun */
+    uint32_t missed;     /**< ticks before it that have had no cycle */
     uint64_t started_ns; /**< true time of the first tick of this life */
     const char *folder;  /* of the shared objects */
     module_t module;
@@ -66,8 +73,20 @@ uint64_t member_clock_ns(const member_t *member, uint64_t time_ns);
 /** True time at which the target's clock shows `clock_ns`. */
 uint64_t member_true_ns(const member_t *member, uint64_t clock_ns);
 
-/** Runs the control cycle of tick `number`. */
-void member_cycle(member_t *member, uint64_t number);
+/**
+ * Runs the control cycle of tick `number` at the true time `time_ns`, or begins it if it is stalled: it then goes on at
+ * `time_ns` + `stall_ns`.  Returns false, with a message, if memory is short.
+ */
+bool member_cycle(member_t *member, uint64_t number, uint64_t time_ns);
+
+/** Ends a cycle that is stalled, at the true time `time_ns`. */
+void member_resume(member_t *member, uint64_t time_ns);
+
+/**
+ * Returns the number of the next tick after a cycle that has ended at the true time `time_ns`: the newest one that is
+ * due, or the one after the cycle's.  Keeps the number of ticks in between.
+ */
+uint64_t member_next_tick(member_t *member, uint64_t time_ns);
 
 /** Frees everything. */
 void member_close(member_t *member);

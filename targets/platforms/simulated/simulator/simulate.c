@@ -188,10 +188,20 @@ static bool publish_all(simulation_t *simulation, size_t index, const uint64_t *
 static bool cycle(simulation_t *simulation, const event_t *event)
 {
     member_t *member = &simulation->members[event->place];
-    member_cycle(member, event->number);
-    const uint64_t next = event->number + 1U;
+    if (member->is_stalled) {
+        member_resume(member, event->time_ns);
+    } else if (!member_cycle(member, event->number, event->time_ns)) {
+        return false;
+    }
+    if (member->is_stalled) {
+        const uint64_t stall_ns = member->stall_ns;
+        member->stall_ns = 0;
+        return add(simulation, EVENT_CYCLE, event->time_ns + stall_ns, event->place, event->number);
+    }
+    const uint64_t next = member_next_tick(member, event->time_ns);
+    const uint64_t next_ns = member_tick_ns(member, next);
     return publish_all(simulation, event->place, &event->number, event->time_ns) &&
-           add(simulation, EVENT_CYCLE, member_tick_ns(member, next), event->place, next);
+           add(simulation, EVENT_CYCLE, next_ns > event->time_ns ? next_ns : event->time_ns, event->place, next);
 }
 
 static bool communicate(simulation_t *simulation, const event_t *event)
@@ -220,6 +230,7 @@ static void apply(member_t *member, const epg_host_event_t *event)
         break;
     case EPG_HOST_STALL:
     default:
+        member->stall_ns += (uint64_t)(event->value * 1e9 + 0.5);
         break;
     }
 }
@@ -247,6 +258,9 @@ static bool fail(simulation_t *simulation, const event_t *event)
         return true;
     case FAILURE_RESTART:
         return member_restart(member, event->time_ns) && begin(simulation, failure->target);
+    case FAILURE_STALL:
+        member->stall_ns += member->state == MEMBER_RUNS ? failure->duration_ns : 0;
+        return true;
     case FAILURE_OFFLINE:
     case FAILURE_ONLINE:
     default:

@@ -20,6 +20,7 @@ typedef enum failure_kind {
     FAILURE_DIE,
     FAILURE_HANG,
     FAILURE_RESTART,
+    FAILURE_STALL,
     FAILURE_OFFLINE,
     FAILURE_ONLINE
 } failure_kind_t;
@@ -29,6 +30,7 @@ typedef struct failure {
     uint64_t time_ns;
     size_t target;
     failure_kind_t kind;
+    uint64_t duration_ns; /**< of a stall; 0 for others */
 } failure_t;
 
 typedef struct simulation {

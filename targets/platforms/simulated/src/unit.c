@@ -11,6 +11,21 @@
 extern const epg_host_target_t EPG_UNIT_HOST;
 extern const epg_unit_plant_t EPG_UNIT_PLANT;
 
+/** The application of the target, with read_and_pause() in place of read(). */
+static epg_application_t application;
+
+/** The pause of the present cycle; NULL: none. */
+static epg_unit_pause_t *present_pause;
+static void *pause_context;
+
+static void read_and_pause(void)
+{
+    EPG_UNIT_HOST.target->application->read();
+    if (present_pause != NULL) {
+        epg_host_clock_simulate(present_pause(pause_context));
+    }
+}
+
 static epg_control_t *control(void)
 {
     return EPG_UNIT_HOST.target->control;
@@ -19,12 +34,16 @@ static epg_control_t *control(void)
 static void start(void)
 {
     epg_host_clock_simulate(0);
-    epg_control_start(control(), EPG_UNIT_HOST.target->application);
+    application = *EPG_UNIT_HOST.target->application;
+    application.read = read_and_pause;
+    epg_control_start(control(), &application);
 }
 
-static void cycle(uint64_t tick_ns, uint32_t missed)
+static void cycle(uint64_t tick_ns, uint64_t begin_ns, uint32_t missed, epg_unit_pause_t *pause, void *context)
 {
-    epg_host_clock_simulate(tick_ns);
+    present_pause = pause;
+    pause_context = context;
+    epg_host_clock_simulate(begin_ns);
     epg_control_cycle(control(), tick_ns, missed);
 }
 

@@ -18,7 +18,7 @@
 #include "epg/host.h"
 
 /** The version of the structures below; a shared object of another version is refused. */
-#define EPG_UNIT_VERSION 1U
+#define EPG_UNIT_VERSION 2U
 
 /** A member of the structure with the plant's inputs. */
 typedef struct epg_unit_port {
@@ -39,6 +39,9 @@ typedef struct epg_unit_plant {
     void (*sense)(void);       /**< sets the signals of the sensors by the outputs */
 } epg_unit_plant_t;
 
+/** See `cycle` of epg_unit_t. */
+typedef uint64_t epg_unit_pause_t(void *context);
+
 typedef struct epg_unit {
     uint32_t version;              /**< EPG_UNIT_VERSION */
     const epg_host_target_t *host; /**< the target: its period, its topics, and the signals that can be recorded */
@@ -47,8 +50,12 @@ typedef struct epg_unit {
     /** Starts the application.  Must be called before all other functions, when the sensors have their first values. */
     void (*start)(void);
 
-    /** Runs the control cycle of the tick at `tick_ns`; `missed` ticks before it have had no cycle. */
-    void (*cycle)(uint64_t tick_ns, uint32_t missed);
+    /**
+     * Runs the control cycle of the tick at `tick_ns` at the time `begin_ns`; `missed` ticks before it have had no cycle.
+     * If `pause` is not NULL, the cycle calls it with `context` after it has sampled the sensors.  `pause` returns the
+     * time at which the cycle goes on.
+     */
+    void (*cycle)(uint64_t tick_ns, uint64_t begin_ns, uint32_t missed, epg_unit_pause_t *pause, void *context);
 
     /** Delivers a value of a setpoint, as epg_control_receive(). */
     void (*receive)(size_t setpoint, double value, uint64_t time_ns, bool publish);
