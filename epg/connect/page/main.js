@@ -50,7 +50,10 @@ function diagram(state) {
   }
   const byPort = new Map();
   for (const each of state.diagnostics) {
-    for (const port of each.ports) byPort.set(port, [...(byPort.get(port) || []), each]);
+    for (const port of each.ports) {
+      const shown = port === each.port ? each : { ...each, message: `${each.port}: ${each.message}` };
+      byPort.set(port, [...(byPort.get(port) || []), shown]);
+    }
   }
   const byComponent = Map.groupBy(
     state.diagnostics.filter((each) => each.port === null),
