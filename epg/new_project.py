@@ -11,7 +11,7 @@ import json
 import os
 import re
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -130,19 +130,24 @@ def write_project(request: ProjectRequest, diagnostics: Diagnostics) -> NewProje
     Raises :class:`~epg.diagnostics.UserError`; then nothing was written.
     """
     project = diagnostics.checked(new_project(request, diagnostics))
-    present = present_files(request.folder, project.files)
+    refuse_present(request.folder, project.files, diagnostics)
+    write_folder(request.folder, project.files)
+    return project
+
+
+def refuse_present(folder: Path, files: Iterable[str], diagnostics: Diagnostics) -> None:
+    """Stops after reporting those of ``files`` that ``folder`` has already."""
+    present = present_files(folder, files)
     if len(present) == 1:
         hint = "no file was written: 'epg new' does not replace files"
         diagnostics.error("file-exists", Span(str(present[0])), "this file exists", hint=hint)
     elif present:
-        names = ", ".join(path.relative_to(request.folder).as_posix() for path in present[:_SHOWN])
+        names = ", ".join(path.relative_to(folder).as_posix() for path in present[:_SHOWN])
         more = f" and {len(present) - _SHOWN} more" if len(present) > _SHOWN else ""
         hint = "no file was written: 'epg new' does not replace files; name a new folder"
         message = f"this folder already has files of the project: {names}{more}"
-        diagnostics.error("file-exists", Span(str(request.folder)), message, hint=hint)
+        diagnostics.error("file-exists", Span(str(folder)), message, hint=hint)
     diagnostics.stop_if_errors()
-    write_folder(request.folder, project.files)
-    return project
 
 
 def check_project(project: NewProject, request: ProjectRequest, diagnostics: Diagnostics) -> None:

@@ -54,23 +54,38 @@ def robot_axes(folder: Path, components: Mapping[str, Component], used: Collecti
     The signal that follows is the plant output, and the signal that drives the plant input, whose names share the most
     words with the subscriber's name.
     """
-    bindings = load_yaml(folder / BINDINGS, Diagnostics())
-    assert bindings is not None, "EPG's own file"
     ports = {
-        section: {port: str(node.value) for port, node in bindings[section].items() if node.value in components}
-        for section in ("inputs", "outputs")
+        section: {port: component for port, component in bound.items() if component in components}
+        for section, bound in plant_ports(folder / BINDINGS).items()
     }
     axes = []
     for component in components.values():
         topic = component.parameters.get("topic")
         if component.kind.communication != "subscribe" or component.name not in used or len(component.kind.ports) != 1:
             continue
-        position = _nearest(component.name, ports["outputs"])
-        duty = _nearest(component.name, ports["inputs"])
+        position = nearest(component.name, ports["outputs"])
+        duty = nearest(component.name, ports["inputs"])
         if position:
             duty = f"plant.inputs.{duty}" if duty else ""
             axes.append(MovedAxis(component.name, str(topic), f"plant.outputs.{position}", duty))
     return axes
+
+
+def plant_ports(bindings: Path) -> dict[str, dict[str, str]]:
+    """The ports of a plant with their components, by section: ``{"inputs": {"duty_pan": "pwm_pan"}, "outputs": ...}``.
+
+    Several components of one port are separated by blanks.  ``bindings`` is a file without mistakes.
+    """
+    root = load_yaml(bindings, Diagnostics())
+    assert root is not None, "it was checked"
+    found = {}
+    for section, key in (("inputs", "from"), ("outputs", "to")):
+        bound = root.get(section)
+        ends = {port: node.elements() or (node,) for port, node in bound.items()} if bound is not None else {}
+        found[section] = {
+            port: " ".join(str((node.get(key) or node).value) for node in nodes) for port, nodes in ends.items()
+        }
+    return found
 
 
 def model_axes(model: Model, topics: Mapping[str, str]) -> list[MovedAxis]:
@@ -94,7 +109,7 @@ def _unit(unit: str) -> str:
     return normal_unit(unit) if known else "none"
 
 
-def _nearest(name: str, ports: Mapping[str, str]) -> str:
+def nearest(name: str, ports: Mapping[str, str]) -> str:
     """The port whose name and component share the most words with ``name``; empty if no port shares one."""
     words = set(name.lower().split("_"))
     shared = {port: len(words & set(f"{port}_{component}".lower().split("_"))) for port, component in ports.items()}

@@ -20,6 +20,10 @@ from epg.install import ACTIVATE, install_command
 NAME = "NAME"
 """The placeholder of the project's name in names of files."""
 SUFFIX = ".j2"
+SYSTEM = "system"
+"""The folder of templates for a system."""
+_OTHERS = ("common", SYSTEM)
+"""The folders of templates that belong to no platform."""
 
 
 @dataclass(frozen=True)
@@ -87,6 +91,26 @@ class ProjectPlan:
     install_with_west: ClassVar[str] = install_command("west <folder of EPG>")
 
 
+@dataclass(frozen=True)
+class SystemPlan:
+    """The values that the templates of a project for a system can use.
+
+    ``system`` is the path of the system's file relative to the project, and ``targets`` are the names of its targets.
+    ``axes`` are the axes that its scenario moves: those whose ``setpoint`` is one of ``topics``, which the scenario
+    sends, and those that follow another target.
+    """
+
+    name: str
+    system: str
+    targets: Sequence[str]
+    topics: Sequence[str]
+    axes: Sequence[MovedAxis]
+    versions: Mapping[str, str]
+
+    activate: ClassVar[str] = ACTIVATE
+    install: ClassVar[str] = install_command()
+
+
 def project_folder(names: Iterable[str], roots: Iterable[Path]) -> Path | None:
     """The folder of templates of the first name in ``names`` that has one, or None.
 
@@ -103,10 +127,10 @@ def project_folder(names: Iterable[str], roots: Iterable[Path]) -> Path | None:
 def project_names(roots: Iterable[Path]) -> list[str]:
     """The names for which :func:`project_folder` finds a folder, sorted."""
     folders = (folder for root in roots for folder in (root / "projects").glob("*/"))
-    return sorted({folder.name for folder in folders if folder.is_dir() and folder.name != "common"})
+    return sorted({folder.name for folder in folders if folder.is_dir() and folder.name not in _OTHERS})
 
 
-def project_files(plan: ProjectPlan, folder: Path, roots: Iterable[Path]) -> dict[str, str]:
+def project_files(plan: ProjectPlan | SystemPlan, folder: Path, roots: Iterable[Path]) -> dict[str, str]:
     """The text of each file of the project that ``folder`` makes, by its path in the project.
 
     A template can make an empty text; the project then does not have that file.

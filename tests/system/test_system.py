@@ -152,7 +152,7 @@ def example(tmp_path: Path) -> tuple[Path, str]:
     page = (ROOT / "docs/systems.md").read_text(encoding="utf-8")
     text = page.partition("<!-- two jiwys -->")[2].partition("<!-- end -->")[0]
     system, told = (block.partition("\n")[2] for block in text.split("```")[1::2])
-    for name in ("model", "jiwy.bindings.yaml"):
+    for name in ("model", "plant", "jiwy.bindings.yaml", "plant.bindings.yaml"):
         (tmp_path / name).symlink_to(ROOT / "examples/jiwy" / name)
     path = tmp_path / "two_jiwys.system.yaml"
     path.write_text(system)

@@ -24,10 +24,9 @@ typedef struct options {
     char folder[4096];      /* of the program */
 } options_t;
 
-static int usage(const epg_system_t *system, const char *problem, const char *word)
+static void help(const epg_system_t *system, FILE *file)
 {
-    fprintf(stderr, "%s: error: %s%s\n", system->name, problem, word);
-    fprintf(stderr,
+    fprintf(file,
             "usage: %s --duration SECONDS [options]\n"
             "\n"
             "Simulates all targets of the system, their messages and plants.\n"
@@ -40,8 +39,15 @@ static int usage(const epg_system_t *system, const char *problem, const char *wo
             "                              those of the system's plant into FOLDER/plant.csv, one row per step\n"
             "  --topics FILE               writes all published values\n"
             "  --statistics FILE           writes the states of the targets at the end, as JSON\n"
-            "  --interface                 prints the names of targets, topics and signals, for programs\n",
+            "  --interface                 prints the names of targets, topics and signals, for programs\n"
+            "  --help                      prints this text\n",
             system->name);
+}
+
+static int usage(const epg_system_t *system, const char *problem, const char *word)
+{
+    fprintf(stderr, "%s: error: %s%s\n", system->name, problem, word);
+    help(system, stderr);
     return WRONG_OPTIONS;
 }
 
@@ -150,6 +156,10 @@ static bool write_statistics(const simulation_t *simulation, const char *path)
 static int run(simulation_t *simulation, options_t *options, int argc, char **argv)
 {
     const epg_system_t *system = simulation->system;
+    if (argc == 2 && strcmp(argv[1], "--help") == 0) {
+        help(system, stdout);
+        return DONE;
+    }
     if (system->plant != NULL && !open_plant(simulation, options->folder)) {
         return FAILED;
     }
