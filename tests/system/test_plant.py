@@ -29,11 +29,8 @@ targets:
 world: {sends: [pan/pan_subscriber, tilt/tilt_subscriber, own/pan_subscriber, own/tilt_subscriber,
                 pan/tilt_subscriber, tilt/pan_subscriber]}
 """
-SPLIT_PLANT = """version: 1
-model: JIWY_Plant
-inputs: {duty_pan: pan/pwm_pan, duty_tilt: tilt/pwm_tilt}
-outputs: {angle_pan: pan/encoder_pan, angle_tilt: tilt/encoder_tilt}
-"""
+PAGE = (ROOT / "docs/systems.md").read_text(encoding="utf-8")
+SPLIT_PLANT = PAGE.partition("<!-- plant -->\n```yaml\n")[2].partition("```")[0]
 ONE = """version: 1
 system: one
 plant: {model: plant, bindings: one.plant.yaml, period: 100 us}
@@ -333,12 +330,22 @@ def test_the_file_sets_the_step_of_the_plant(built: Project, split: Path, tmp_pa
 
 
 def test_a_plant_that_diverges_ends_the_run(built: Project, tmp_path: Path) -> None:
+    """Negative friction lets the plant of a system diverge, and the plant of one target."""
+    friction = "\nparameters: {Pan.Motor.d: -1}"
     built.edit("coupled.plant.yaml", "damping: 0.5", "damping: -5000")
+    built.edit("plant.bindings.yaml", "  angle_tilt: encoder_tilt", f"  angle_tilt: encoder_tilt{friction}")
     built.build()
-    command: list[str | Path] = [built.build_folder / "coupled", "--duration", "10", "--trace", tmp_path]
-    done = subprocess.run(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, check=False)
+    enable = tmp_path / "enable.in"
+    enable.write_text("time,topic,value\n0,$enable,1\n")
+    for system, output, file, options in (
+        ("coupled", "plant/outputs.position_1", "plant.csv", ()),
+        ("split", "own/plant.outputs.angle_pan", "own.csv", ("--setpoints", f"own={enable}")),
+    ):
+        command: list[str | Path] = [built.build_folder / system, "--duration", "10", "--trace", tmp_path, *options]
+        done = subprocess.run(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, check=False)
+        assert done.returncode == 1
+        assert done.stderr.startswith(f"error: the plant has diverged: {output} is ")
+        last = float(done.stderr.partition(" at ")[2].partition(" s\n")[0])
+        assert last < 5 and last - 0.0011 < float(rows(tmp_path / file)[-1]["time"]) <= last
     built.edit("coupled.plant.yaml", "damping: -5000", "damping: 0.5")
-    assert done.returncode == 1
-    last = float(rows(tmp_path / "plant.csv")[-1]["time"])
-    assert done.stderr.startswith("error: the plant has diverged: position_1 is ")
-    assert f" at {last:g} s\nhint: " in done.stderr
+    built.edit("plant.bindings.yaml", friction, "")

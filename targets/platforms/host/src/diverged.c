@@ -15,9 +15,10 @@ bool epg_host_has_diverged(double value)
     return !epg_is_finite(value) || value > EPG_HOST_PLANT_LARGEST || value < -EPG_HOST_PLANT_LARGEST;
 }
 
-void epg_host_tell_diverged(const char *output, double value, uint64_t time_ns)
+void epg_host_tell_diverged(const char *owner, const char *output, double value, uint64_t time_ns)
 {
-    fprintf(stderr, "error: the plant has diverged: %s is ", output);
+    const bool owned = owner != NULL;
+    fprintf(stderr, "error: the plant has diverged: %s%s%s is ", owned ? owner : "", owned ? "/" : "", output);
     epg_host_write_number(stderr, value);
     fputs(" at ", stderr);
     epg_host_write_number(stderr, epg_host_seconds(time_ns));

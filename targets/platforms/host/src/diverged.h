@@ -15,7 +15,7 @@
 /** Returns true if `value`, an output of a plant, is not finite or too large. */
 bool epg_host_has_diverged(double value);
 
-/** Prints a message: `output` had the value `value` at `time_ns`. */
-void epg_host_tell_diverged(const char *output, double value, uint64_t time_ns);
+/** Prints a message: `output` had the value `value` at `time_ns`.  `owner` is a target of a system; NULL: none. */
+void epg_host_tell_diverged(const char *owner, const char *output, double value, uint64_t time_ns);
 
 #endif

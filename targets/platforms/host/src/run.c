@@ -42,6 +42,6 @@ void epg_host_run_end(epg_host_run_t *run, uint64_t tick_ns, uint64_t next_ns)
     application->safe();
     epg_plant_actuate(&run->plant);
     if (run->diverged != NULL) {
-        epg_host_tell_diverged(run->diverged->name, run->diverged_value, run->diverged_ns);
+        epg_host_tell_diverged(NULL, run->diverged->name, run->diverged_value, run->diverged_ns);
     }
 }

@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../host/src/diverged.h"
+
 #define BILLION 1000000000U
 
 /** `value` * `factor` / `divisor`, rounded down, without overflow: `factor` and `divisor` are below 2^31. */
@@ -180,10 +182,27 @@ static void stalled_cycle(void *context)
                         stall_wait, member->stall);
 }
 
+/** True if the outputs of the target's own plant are possible values.  Else false after a message. */
+static bool own_plant_is_sound(const member_t *member, uint64_t time_ns)
+{
+    const epg_host_target_t *host = member->unit->host;
+    for (size_t i = 0; member->plant == &member->own_plant && i < host->plant_output_count; i++) {
+        const epg_host_signal_t *output = &host->plant_outputs[i];
+        if (epg_host_has_diverged(*output->value)) {
+            epg_host_tell_diverged(member->facts->name, output->name, *output->value, time_ns);
+            return false;
+        }
+    }
+    return true;
+}
+
 bool member_cycle(member_t *member, uint64_t number, uint64_t time_ns)
 {
     advance(member, time_ns);
     sense(member);
+    if (!own_plant_is_sound(member, time_ns)) {
+        return false;
+    }
     member->tick = number;
     member->begin_ns = time_ns;
     if (member->stall_ns > 0) {

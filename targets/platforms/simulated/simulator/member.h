@@ -75,7 +75,7 @@ uint64_t member_true_ns(const member_t *member, uint64_t clock_ns);
 
 /**
  * Runs the control cycle of tick `number` at the true time `time_ns`, or begins it if it is stalled: it then goes on at
- * `time_ns` + `stall_ns`.  Returns false, with a message, if memory is short.
+ * `time_ns` + `stall_ns`.  Returns false, with a message, if the target's own plant has diverged, or if memory is short.
  */
 bool member_cycle(member_t *member, uint64_t number, uint64_t time_ns);
 

@@ -80,7 +80,9 @@ static void check(plant_t *plant, uint64_t time_ns)
         const double value = value_of(plant->model->outputs, &plant->facts->outputs[i]);
         if (epg_host_has_diverged(value)) {
             plant->has_diverged = true;
-            epg_host_tell_diverged(plant->facts->outputs[i].name, value, time_ns);
+            char name[256];
+            snprintf(name, sizeof name, "outputs.%s", plant->facts->outputs[i].name);
+            epg_host_tell_diverged("plant", name, value, time_ns);
         }
     }
 }
