@@ -78,7 +78,9 @@ def _check_target(binding: Binding, system: System, diagnostics: Diagnostics) ->
     target = system.targets.get(name)
     if target is None:
         message = f"this system has no target '{name}'"
-        diagnostics.error("unknown-target", binding.span, message, hint=did_you_mean(name, system.targets, "targets"))
+        numbered = [other for other in system.targets if other.rpartition("_")[0] == name]
+        hint = f"name one of them: {', '.join(numbered)}" if numbered else did_you_mean(name, system.targets, "targets")
+        diagnostics.error("unknown-target", binding.span, message, hint=hint)
     elif target.plant is not None:
         message = f"'{name}' has a plant already, which moves '{component}'"
         notes = [Note("the target", target.span)]
