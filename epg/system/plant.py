@@ -6,6 +6,7 @@ All checks compare the plant with all targets.  In the simulation, each target g
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -78,7 +79,7 @@ def _check_target(binding: Binding, system: System, diagnostics: Diagnostics) ->
     target = system.targets.get(name)
     if target is None:
         message = f"this system has no target '{name}'"
-        numbered = [other for other in system.targets if other.rpartition("_")[0] == name]
+        numbered = [other for other in system.targets if re.fullmatch(rf"{re.escape(name)}_\d+", other)]
         hint = f"name one of them: {', '.join(numbered)}" if numbered else did_you_mean(name, system.targets, "targets")
         diagnostics.error("unknown-target", binding.span, message, hint=hint)
     elif target.plant is not None:

@@ -151,9 +151,10 @@ def part_outputs(
     request = system.simulated(target, part_name(program, target.name), user_roots)
     application = diagnostics.checked(load_application(request, diagnostics))
     if system.plant is not None:
-        files = diagnostics.checked(load_plant(system.plant, load_model, diagnostics))
-        application = with_plant(application, target.name, files, plant_library(program), diagnostics)
-        diagnostics.stop_if_errors()
+        of_plant = Diagnostics()  # its warnings belong to the program, not to each target
+        files = of_plant.checked(load_plant(system.plant, load_model, of_plant))
+        application = with_plant(application, target.name, files, plant_library(program), of_plant)
+        of_plant.stop_if_errors()
     return application_outputs(application, request.roots, names)
 
 
