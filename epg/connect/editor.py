@@ -129,7 +129,7 @@ class Editor:
             return []
         if not {port.name for port in (*model.inputs, *model.outputs)} <= set(self.loaded.bound):
             return []
-        return unused_parts(configuration, self.loaded.references)
+        return unused_parts(configuration, self.loaded.references, self.loaded.plant_references)
 
     def show(self) -> dict[str, Any]:
         """The part of the state that belongs to this target."""

@@ -70,9 +70,15 @@ class Loaded:
     @cached_property
     def references(self) -> frozenset[str]:
         """The component ports at which wires end, as the bindings name them."""
-        names = ((section, name) for section in ("inputs", "outputs") for name in self.bound)
-        ends = (ends_of(self.root, section, name) for section, name in names if self.root is not None)
-        return frozenset(end.reference for found in ends for end in found or ())
+        return _references(self.root)
+
+    @cached_property
+    def plant_references(self) -> frozenset[str]:
+        """The component ports to which the simulated robot is bound."""
+        path = self.request.plant_bindings
+        text = read_text(path, Diagnostics(), None, self.request.drafts) if path is not None else None
+        root = parse_yaml(text, str(path), Diagnostics()) if text is not None else None
+        return _references(root if root is not None and root.is_mapping else None)
 
     @cached_property
     def places(self) -> Places:
@@ -94,6 +100,14 @@ class Loaded:
         yield from files_of_model(request.model, parts.model)
         if request.plant is not None:
             yield request.plant
+
+
+def _references(root: YamlNode | None) -> frozenset[str]:
+    """The component ports that bindings name."""
+    sections = ((section, root.get(section)) for section in ("inputs", "outputs")) if root is not None else ()
+    ports = ((section, name) for section, node in sections if node is not None for name, _ in node.items())
+    ends = (ends_of(root, section, name) for section, name in ports if root is not None)
+    return frozenset(end.reference for found in ends for end in found or ())
 
 
 def tcf_path(request: Request) -> Path | None:

@@ -8,17 +8,20 @@ from collections.abc import Collection
 from epg.check.configuration import Component, Configuration
 
 
-def unused_parts(configuration: Configuration, bound: Collection[str]) -> list[list[str]]:
+def unused_parts(
+    configuration: Configuration, bound: Collection[str], simulated: Collection[str] = ()
+) -> list[list[str]]:
     """The components without use, and the parameters of others that need an output which is not ``bound``.
 
     ``bound`` are the references of all wires.  Each part is a list of keys below ``components``.  A component is used
     if a wire ends at it, if the target communicates or fails safely through it, or if a used component names it.  A
-    guard is used as long as its motor is.
+    guard is used as long as its motor is.  Components of the ``simulated`` robot stay, too: it has a port for each.
     """
     components = configuration.components
     communication = configuration.communication
     named = {configuration.control.fail_safe, communication.transport, communication.console_transport}
-    used = {name for name in components if name in named or name in {end.partition(".")[0] for end in bound}}
+    ends = {reference.partition(".")[0] for reference in (*bound, *simulated)}
+    used = {name for name in components if name in named or name in ends}
     more = True
     while more:
         more = False

@@ -63,6 +63,8 @@ def resolve(
     communication = configuration.communication
     used: set[str | None] = {wire.component.name for wire in (*inputs, *outputs)}
     used |= {fail_safe, communication.transport, communication.console_transport}
+    if simulated is not None:
+        used |= {wire.component.name for wire in (*simulated.inputs, *simulated.outputs)}
     for component in configuration.components.values():
         usable = component.kind.ports or component.kind.transport
         if usable and component.name not in used and diagnostics.error_count == errors:

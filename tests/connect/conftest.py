@@ -27,7 +27,11 @@ def new_project(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def one_axis(tmp_path: Path) -> Path:
-    """A new project of a model with one axis for JIWY, which has two."""
+    """A new project for a Pico of a model with one axis for JIWY, which has two."""
+    return one_axis_project(tmp_path, "rpi_pico_bare_metal_jiwy")
+
+
+def one_axis_project(tmp_path: Path, target: str) -> Path:
     model = tmp_path / "pan"
     model.mkdir()
     (model / "model.yaml").write_text(
@@ -42,7 +46,7 @@ def one_axis(tmp_path: Path) -> Path:
     (model / "pan.c").write_text(
         '#include "pan.h"\nvoid pan(const in_t *in, out_t *out) { out->pwm_pan = in->setpoint_pan; }\n'
     )
-    write_project(ProjectRequest("robot", tmp_path / "robot", "rpi_pico_bare_metal_jiwy", model), Diagnostics())
+    write_project(ProjectRequest("robot", tmp_path / "robot", target, model), Diagnostics())
     return tmp_path / "robot"
 
 

@@ -16,6 +16,7 @@ import pytest
 from epg.connect.projects import find_jobs
 from epg.connect.session import Session
 from epg.diagnostics import Diagnostics
+from tests.connect.conftest import one_axis_project
 from tests.connect.page import Denied, Page, serving, session_of
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -95,6 +96,16 @@ def test_parts_that_no_port_uses_are_left_out(one_axis: Path) -> None:
         assert "components:\n  encoder_tilt: null\n" in (one_axis / "robot.tcf").read_text()
         with pytest.raises(Denied, match="no part of the robot is unused"):
             page.post("leave_out")
+
+
+def test_the_simulated_robot_keeps_its_parts(tmp_path: Path) -> None:
+    folder = one_axis_project(tmp_path, "host_jiwy")
+    with serving(session_of(folder)) as page:
+        assert page.state()["unused"] == [
+            *("tilt_subscriber", "pan_publisher", "tilt_publisher"),
+            *("guard_pan.homing", "guard_tilt.homing"),
+        ]
+        assert page.post("leave_out")["diagnostics"] == []
 
 
 def test_outputs_can_have_several_ends_or_none(page: Page, bindings: Path) -> None:
