@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import subprocess
 from bisect import bisect_left, bisect_right
@@ -240,7 +241,8 @@ def test_two_targets_share_a_robot(split: Path) -> None:
 def coupled(built: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("coupled")
     (folder / "events.csv").write_text("time,target,event\n2.0002,cart_1,die\n3,cart_1,restart\n")
-    return run(built, "coupled", folder / "run", 4, "--events", str(folder / "events.csv"))
+    files = ["--events", str(folder / "events.csv"), "--statistics", str(folder / "run/end.json")]
+    return run(built, "coupled", folder / "run", 4, *files)
 
 
 def test_a_cycle_reads_the_newest_outputs_and_writes_for_the_next_step(coupled: Path) -> None:
@@ -287,6 +289,12 @@ def test_a_scenario_judges_the_plant(built: Project, coupled: Path, tmp_path: Pa
     times, one, two = columns(coupled / "plant.csv", "time", "outputs.position_1", "outputs.position_2")
     inside = [number for number, time in enumerate(times) if 2.1 <= time <= 2.9]
     assert result.windows[0].largest == max(abs(two[number] - one[number]) for number in inside) > 0
+
+
+def test_the_statistics_have_the_last_outputs(coupled: Path) -> None:
+    last = rows(coupled / "plant.csv")[-1]
+    plant = json.loads((coupled / "end.json").read_text(encoding="utf-8"))["plant"]
+    assert plant == {name: float(last[f"outputs.{name}"]) for name in ("position_1", "position_2", "stretch")}
 
 
 def differences(one: Path, other: Path) -> float:

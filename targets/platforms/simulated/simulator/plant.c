@@ -73,6 +73,14 @@ void plant_record(plant_t *plant, FILE *file)
     write_row(plant, 0);
 }
 
+void plant_write_outputs(const plant_t *plant, FILE *file)
+{
+    for (size_t i = 0; i < plant->facts->output_count; i++) {
+        fprintf(file, "%s\"%s\": ", i > 0 ? ", " : "", plant->facts->outputs[i].name);
+        epg_host_write_number(file, value_of(plant->model->outputs, &plant->facts->outputs[i]));
+    }
+}
+
 /** Reports the first output that is not finite or too large. */
 static void check(plant_t *plant, uint64_t time_ns)
 {

@@ -42,6 +42,9 @@ bool plant_open(plant_t *plant, const char *folder, const char *file, uint64_t s
 /** Writes the names of the ports of `plant->facts` and their present values to `file`, and a row after each step. */
 void plant_record(plant_t *plant, FILE *file);
 
+/** Writes the present outputs of `plant->facts` as members of a JSON object. */
+void plant_write_outputs(const plant_t *plant, FILE *file);
+
 /** Makes the steps that are due until `time_ns`.  A plant that has diverged makes none. */
 void plant_advance(plant_t *plant, uint64_t time_ns);
 

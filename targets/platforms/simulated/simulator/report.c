@@ -78,5 +78,11 @@ void report_statistics(const simulation_t *simulation, FILE *file)
         write_target(&simulation->members[i], file);
         fputs(i + 1U < system->target_count ? ",\n" : "\n", file);
     }
-    fputs("  }\n}\n", file);
+    fputs("  }", file);
+    if (system->plant != NULL) {
+        fputs(",\n  \"plant\": {", file);
+        plant_write_outputs(&simulation->plant, file);
+        fputs("}", file);
+    }
+    fputs("\n}\n", file);
 }

@@ -17,7 +17,10 @@
  */
 void report_interface(const simulation_t *simulation);
 
-/** Writes the states of all targets as one JSON object.  The counts of a target are those since its last start. */
+/**
+ * Writes the states of all targets and the last outputs of the system's plant as one JSON object.  The counts of a target
+ * are those since its last start.
+ */
 void report_statistics(const simulation_t *simulation, FILE *file);
 
 #endif
