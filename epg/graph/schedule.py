@@ -7,10 +7,11 @@ The boxes are in the order of time.  Their widths do not show durations, because
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 
 from epg.graph.svg import Picture, width
 from epg.quantity import show
-from epg.resolve.application import Application, Wire
+from epg.resolve.application import Application, ResolvedComponent, Topic, Wire
 
 _SMALL = 10.5
 _LINE = 15.0
@@ -33,15 +34,16 @@ def control_stages(app: Application) -> tuple[Stage, ...]:
     sampled = [
         c for c in app.components if any(p.direction == "source" for p in c.kind.ports) and not c.kind.communication
     ]
-    setpoints = [topic.name for topic in app.subscriptions if topic.role == "values"]
+    setpoints = [topic for topic in app.subscriptions if topic.role == "values"]
     guards = [c for c in app.components if c.uses]
     stages = [Stage("sample", tuple(c.name for c in sampled))] if sampled else []
-    commands = [f"newest {name}" for name in setpoints]
+    commands = [line for topic in setpoints for line in (f"newest {topic.name}", *_timeout(topic))]
     if app.fail_safe is not None:
         commands.append(f"fail-safe {app.fail_safe.name}")
     stages.append(Stage("commands", (*commands, "enable, faults")))
     read = [f"{wire.port.name} = {_source(wire)}" for wire in app.inputs]
-    stages.append(Stage("inputs", (*read, *(f"check {c.name}" for c in guards if not c.kind.communication))))
+    checks = [line for c in guards if not c.kind.communication for line in (f"check {c.name}", *_thresholds(c))]
+    stages.append(Stage("inputs", (*read, *checks)))
     each = f"every {app.step_divider} cycles" if app.step_divider > 1 else "one step"
     method = (app.model.method,) if app.model.method else ()
     stages.append(Stage("model", (app.model.name, each, *method, "finite, else disable"), "model"))
@@ -52,6 +54,19 @@ def control_stages(app: Application) -> tuple[Stage, ...]:
     told = [wire.port.name for wire in app.outputs if wire.component.kind.communication]
     stages.append(Stage("hand over", (*told, "statistics")))
     return tuple(stages)
+
+
+def _timeout(topic: Topic) -> list[str]:
+    """The line about the timeout of a setpoint; none if it has none."""
+    parameters = topic.component.parameters if topic.component is not None else {}
+    timeout, action = parameters.get("timeout"), parameters.get("on_timeout")
+    return [f"older than {show(timeout, 'time')}: {action}"] if isinstance(timeout, int | float | Fraction) else []
+
+
+def _thresholds(component: ResolvedComponent) -> list[str]:
+    """The lines about the limits that a guard checks, as its ``.tcf`` states them."""
+    stated = [(key, node) for key, node in component.node.items() if node.is_mapping]
+    return [f"{key}: {', '.join(f'{name} {value.value}' for name, value in node.items())}" for key, node in stated]
 
 
 def _source(wire: Wire) -> str:

@@ -40,6 +40,7 @@ text { font-family: ui-monospace, 'DejaVu Sans Mono', Menlo, Consolas, monospace
 .board { fill: #dafbe1; stroke: #1a7f37; stroke-width: 1.6; }
 .plain { fill: none; stroke: #59636e; stroke-dasharray: 4 3; }
 .contact { fill: #ffffff; stroke: #1f2328; stroke-width: 1.2; }
+.used { stroke: #1f2328; stroke-width: 1.2; }
 .ground { fill: #1f2328; stroke: #1f2328; }
 .supply { fill: #d1242f; stroke: #1f2328; }
 .other { fill: #bf8700; stroke: #1f2328; }
@@ -56,6 +57,7 @@ text { fill: #f0f6fc; }
 .board { fill: #0f2f1c; stroke: #3fb950; }
 .plain { stroke: #9198a1; }
 .contact { fill: #0d1117; stroke: #f0f6fc; }
+.used { stroke: #f0f6fc; }
 .ground { fill: #f0f6fc; stroke: #f0f6fc; }
 .supply { fill: #ff7b72; stroke: #f0f6fc; }
 .other { fill: #d29922; stroke: #f0f6fc; }

@@ -156,7 +156,7 @@ def draw_wiring(
     picture.text(0, -PITCH * 2 - 28, title, "middle", 15, "bold")
     picture.text(0, -PITCH + 8, board.summary, "middle", 12, "bold")
     for side, found in sides.items():
-        _contacts(picture, target, layout, side, {terminal.place for terminal in found})
+        _contacts(picture, target, layout, side, {terminal.place: terminal.colour for terminal in found})
         other = {terminal.component for name, there in sides.items() if name != side for terminal in there}
         _side(picture, layout, side, _parts(components, found, other))
     used = {terminal.component for found in sides.values() for terminal in found}
@@ -164,7 +164,11 @@ def draw_wiring(
     return picture.render()
 
 
-def _contacts(picture: Picture, target: Target, layout: Layout, side: str, used: set[int]) -> None:
+def _contacts(picture: Picture, target: Target, layout: Layout, side: str, used: Mapping[int, int]) -> None:
+    """Draws the contacts of a side.  ``used`` maps lines of the grid to the colour of their wires.
+
+    A used contact is a square, so that it differs from free ones without its colour, too.
+    """
     sign = -1 if side == "left" else 1
     anchor = "start" if side == "left" else "end"
     for place, contact in _places(layout, side).items():
@@ -174,7 +178,10 @@ def _contacts(picture: Picture, target: Target, layout: Layout, side: str, used:
         note = layout.supplies[contact.name].title if not contact.pin else ""
         style = "contact" if role == "pin" else role
         x = sign * _INSIDE
-        picture.box(x - 5, y - 5, 10, 10, style, f"contact {contact.number}: {name}{': ' if note else ''}{note}", 5)
+        half, round = (6, 1) if place in used else (5, 5)
+        style = f"used t{used[place]}" if place in used else style
+        shown = f"contact {contact.number}: {name}{': ' if note else ''}{note}"
+        picture.box(x - half, y - half, 2 * half, 2 * half, style, shown, round)
         picture.text(x - sign * 12, y + 4, str(contact.number), anchor, _SMALL, "faint")
         weight = "bold" if place in used or role in ("ground", "supply") else ""
         picture.text(x - sign * 34, y + 4, name, anchor, 11, weight)
@@ -301,19 +308,21 @@ def _wires(picture: Picture, sign: int, near: float, edge: float, wires: Sequenc
 
 
 def _notes(picture: Picture, layout: Layout, others: Sequence[str], driven: bool) -> None:
-    """Writes the notes below the picture: the supplies of the board, and rules for all wires."""
+    """Writes the notes below the picture: the marks of contacts, the supplies of the board, and rules for all wires."""
     rows: dict[str, list[int]] = {}
     for contact in (contact for row in layout.rows for contact in row.contacts):
-        if layout.role(contact) in ("supply", "ground"):
+        if not contact.pin:
             rows.setdefault(contact.name, []).append(contact.number)
     texts = [(f"{name} ({', '.join(map(str, sorted(rows[name])))}): {layout.supplies[name].title}") for name in rows]
+    marks = [("used t0", 1, "used: the colour is that of the wire"), ("contact", 5, "free pin")]
+    marks += [(layout.supplies[name].role, 5, text) for name, text in zip(rows, texts, strict=True)]
     general = [*others, *layout.notes, "Seen from above. Dashed: grounds, which are all connected."]
     if driven:
         general.append(f"{_RESISTOR}: from each wire of the component, which floats until the firmware runs.")
     x = -max(width(text, 11) for text in [*texts, *general]) / 2
     y = picture.bottom + 34
-    for name, text in zip(rows, texts, strict=True):
-        picture.box(x - 16, y - 9, 10, 10, layout.supplies[name].role, round=5)
+    for style, round, text in marks:
+        picture.box(x - 16, y - 9, 10, 10, style, round=round)
         picture.text(x, y, text, size=11)
         y += 18
     for text in general:
