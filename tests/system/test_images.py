@@ -54,6 +54,7 @@ def test_one_command_builds_all_images(project: Project) -> None:
 
     del project.environment["PICO_SDK_PATH"]
     output = project.build("--target", "two_images")
+    assert f"The images are in {images.as_posix()}" in output
     assert (images / "leader/leader_firmware.uf2").is_file()
     assert compiled(output) == {"leader"}, "the other image is up to date"
     assert compiled(project.build("--target", "two_images")) == set()
