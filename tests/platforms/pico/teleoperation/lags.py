@@ -186,8 +186,9 @@ def _messages(
     """The messages of publication ``number`` of the leader, which is also the number of the follower's setpoint."""
     leader, follower = (spans[target] for target in TARGETS)
     ticks = [begin for begin, *_ in leader["tick"]]
-    first = {leader["stored"][bisect_right([s[0] for s in leader["stored"]], tick)][3] for tick in ticks[:1]}
-    stored = [begin + length for begin, length, _, exchange in leader["stored"] if exchange in first]
+    # A cycle writes several exchanges: first the one with its values.
+    values_of = next(exchange for begin, *_, exchange in leader["stored"] if begin > ticks[0])
+    stored = [begin + length for begin, length, _, exchange in leader["stored"] if exchange == values_of]
     copied = [begin for begin, *_ in leader["copied"]]
     sent = [begin for begin, _, _, publication in leader["sent"] if publication == number]
     given = [begin + length for begin, length, _, setpoint in follower["given"] if setpoint == number]
@@ -196,15 +197,17 @@ def _messages(
     assert len(sent) == len(heard) == len(given)
     found = []
     for at, arrival, gift in zip(sent, heard, given, strict=True):
-        copy = copied[bisect_right(copied, at) - 1]
-        values = stored[bisect_right(stored, copy) - 1]
-        tick = ticks[bisect_right(ticks, values) - 1]
-        use = starts[bisect_right(starts, taken[bisect_left(taken, gift)]) - 1]
-        first_clock, second_clock = (member.clock for member in members)
-        times = (first_clock.time_of(tick), second_clock.time_of(use), second_clock.time_of(gift))
-        found.append(Message(times[0] / SECOND, times[1] / SECOND, arrival, times[2] / SECOND))
+        tick = _last(ticks, _last(stored, _last(copied, at)))
+        use = _last(starts, taken[bisect_left(taken, gift)])
+        used, received = (members[1].clock.time_of(cycle) / SECOND for cycle in (use, gift))
+        found.append(Message(members[0].clock.time_of(tick) / SECOND, used, arrival, received))
     assert all(each.sent < each.heard < min(each.given, each.used) for each in found)
     return found
+
+
+def _last(times: Sequence[int], until: int) -> int:
+    """The last of the sorted ``times`` up to ``until``."""
+    return times[bisect_right(times, until) - 1]
 
 
 # Simulated --------------------------------------------------------------------------------------------------------
