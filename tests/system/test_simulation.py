@@ -384,11 +384,7 @@ def test_the_pages_system_and_scenario(tmp_path: Path, capsys: pytest.CaptureFix
         shutil.copytree(ROOT / "examples/jiwy" / name, tmp_path / name)
     for name in ("jiwy.bindings.yaml", "plant.bindings.yaml"):
         shutil.copy(ROOT / "examples/jiwy" / name, tmp_path)
-    bindings = "bindings: jiwy.bindings.yaml"
-    system = block("systems.md", "two jiwys")
-    assert system.count(bindings) == 2
-    with_plant = system.replace(bindings, f"{bindings}, plant: plant, plant_bindings: plant.bindings.yaml")
-    (tmp_path / "two_jiwys.system.yaml").write_text(with_plant)
+    (tmp_path / "two_jiwys.system.yaml").write_text(block("systems.md", "two jiwys"))
     (tmp_path / "follow.yaml").write_text(block("simulation.md", "scenario of two jiwys"))
     command = ["simulate", str(tmp_path / "two_jiwys.system.yaml"), "--scenario", str(tmp_path / "follow.yaml")]
     command += ["--output", str(tmp_path / "results")]
