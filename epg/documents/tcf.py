@@ -138,6 +138,11 @@ def _load(path: Path, diagnostics: Diagnostics, wanted_by: Span | None, drafts: 
             hint="begin the file with 'version: 1'",
         )
         return None
+    if node is not None and "system" in node and "targets" in node:
+        message = "this is a system, not a target configuration"
+        hint = "the name of a system ends with '.system.yaml': rename the file"
+        diagnostics.error("tcf-is-system", node.key_span("system"), message, hint=hint)
+        return None
     return node
 
 
