@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measures lags in the thesis's network situations through DDS, as in its tables 5.5 and 5.6, in real time.
+"""Measures lags in the thesis's network situations, as in its tables 5.5 and 5.6: through DDS and in simulated time.
 
 Setpoints are sent every 33 ms, best effort.  The robots are simulated on this computer, the network is the loopback
 interface, and there is no agent.  The whole chain from setpoint to position is compared with the thesis.  Most of the
 lag is due to the dynamics of the robot and to the two intervals of 33 ms.
+
+The same situations are systems in examples/network_situations.  Their lags in simulated time are always the same.
 """
 
 from __future__ import annotations
@@ -11,25 +13,27 @@ from __future__ import annotations
 import json
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from measure import JIWY, ROOT
+from measure import ROOT, run
 from report import Table, arguments, command_line, show
 
 sys.path.insert(0, str(ROOT))
 
 from epg.diagnostics import Diagnostics
 from epg.simulate.load_scenario import load_scenario
-from epg.simulate.scenario import Profile
+from epg.simulate.scenario import Profile, Scenario
 from tests.emulator.toolchain import Missing
 from tests.ros2.build import Build, build_robots
 from tests.ros2.correlation import errors, fine_lag, lag
 from tests.ros2.network import network
 from tests.ros2.situations import JIWY as JIWY_AXES
-from tests.ros2.situations import RELBOT, SITUATIONS, Follower, Logs, run
+from tests.ros2.situations import SITUATIONS, Follower, Logs
+from tests.ros2.situations import run as run_situation
+from tests.system.situations import SITUATIONS as FOLDER
+from tests.system.situations import simulated_lags
 
-RELBOT_FOLDER = ROOT / "examples" / "relbot"
 FROM = {"JIWY": 4.5, "RELbot": 0.5}  # s: errors and lags are measured from this time on; JIWY homes before it
 
 THESIS_SHARED = {1: ("66", "99"), 2: ("66", "66"), 3: ("99", "133"), 4: ("99", "99")}
@@ -38,64 +42,61 @@ THESIS_TELEOPERATION = {"setpoint to robot 1": ("66", "100"), "robot 1 to robot 
 THESIS_TELEOPERATION |= {"setpoint to robot 3": ("99", "133")}
 """The thesis's table 5.6, pan and tilt in ms."""
 
+FINER = ["finer: pan or left", "finer: tilt or right", "simulated: pan or left", "simulated: tilt or right"]
+"""The last columns of the tables of lags."""
+
 RESOLUTION = (
     "The thesis's table 5.5 has real JIWYs behind agents on two Raspberry Pis. Its resolution, and that of the columns "
-    "beside it, is the interval of 33 ms; the finer columns are a least squares fit in steps of 1 ms."
+    "beside it, is the interval of 33 ms; the finer columns are a least squares fit in steps of 1 ms. "
+    "So are the simulated ones: lags of the systems in examples/network_situations, in simulated time."
 )
 
 
 def main() -> None:
-    options = arguments(__doc__, seconds=0, only=0)
+    options = arguments(__doc__, seconds=0, only=0, systems=1)
     try:
         with tempfile.TemporaryDirectory() as folder:
             build = build_robots(Path(folder) / "build", "-O2")
             numbers = [options.only] if options.only else list(SITUATIONS)
             logs = {number: measure(number, build, Path(folder), options.seconds) for number in numbers}
-            tables = [shared_table(logs), teleoperation_table(logs), tracking_table(logs), timing_table(logs)]
+            simulated = simulate(numbers, Path(folder) / "systems") if options.systems else {}
+            tables = [shared_table(logs, simulated), teleoperation_table(logs, simulated)]
+            tables += [tracking_table(logs), timing_table(logs)]
     except Missing as missing:
         raise SystemExit(str(missing)) from None
     show("network_situations", tables, options.write, command_line("network_situations"))
 
 
-def profiles_of(example: Path) -> dict[str, Profile]:
-    """The motion profiles of the example's scenario, by axis."""
-    scenario = load_scenario(example / "tracking.yaml", Diagnostics())
+def scenario_of(number: int) -> Scenario:
+    """The scenario of the situation as a system: its motion profiles and its duration."""
+    scenario = load_scenario(FOLDER / f"situation_{number}.yaml", Diagnostics())
     assert scenario is not None
-    return {topic.removesuffix("_subscriber"): profile for topic, profile in scenario.profiles.items()}
+    return scenario
 
 
 def profiles_for(number: int) -> dict[str, Profile]:
-    jiwy, relbot = profiles_of(JIWY), profiles_of(RELBOT_FOLDER)
-    if number == 4:
-        return {f"/profile/{axis}": relbot[axis] for axis in RELBOT}
-    if number == 5:
-        return {}
-    found = {f"/profile/{axis}": jiwy[axis] for axis in JIWY_AXES}
-    if number == 2:
-        found |= {f"/other_profile/{axis}": smaller(jiwy[axis]) for axis in JIWY_AXES}
+    """The motion profiles by topic: "profile_pan" of the system is "/profile/pan" here."""
+    return {f"/{'/'.join(name.rsplit('_', 1))}": profile for name, profile in scenario_of(number).profiles.items()}
+
+
+def simulate(numbers: Sequence[int], folder: Path) -> dict[str, list[str]]:
+    """The lags of the situations as systems in simulated time, by the names of the rows."""
+    run(["cmake", "-S", FOLDER, "-B", folder, "-DCMAKE_BUILD_TYPE=Release", f"-DPython3_EXECUTABLE={sys.executable}"])
+    targets = [f"situation_{number}" for number in numbers]
+    run(["cmake", "--build", folder, "--parallel", "2", "--target", *targets])
+    found: dict[str, list[str]] = {}
+    for number, target in zip(numbers, targets):
+        lags = simulated_lags(number, folder / target, folder / f"{target}_results")
+        found |= {row: [str(lag) for lag in pair] for row, pair in lags.items()}
     return found
-
-
-def smaller(profile: Profile) -> Profile:
-    """A similar profile with 0.6 times the size; each part begins half a second later."""
-    parts = tuple(
-        type(part)(part.shape, part.start + 0.5, part.duration, 0.6 * part.target, part.frequency)
-        for part in profile.parts
-    )
-    return Profile(profile.initial, parts)
-
-
-def duration_of(number: int, seconds: int) -> float:
-    if seconds:
-        return float(seconds)
-    return {4: 14.0, 5: 12.0}.get(number, 18.0)
 
 
 def measure(number: int, build: Build, folder: Path, seconds: int) -> Logs:
     results = folder / str(number)
     results.mkdir()
     with network() as net:
-        return run(SITUATIONS[number], profiles_for(number), duration_of(number, seconds), net, build, results)
+        duration = float(seconds or scenario_of(number).duration)
+        return run_situation(SITUATIONS[number], profiles_for(number), duration, net, build, results)
 
 
 def begin_of(robot: Follower) -> float:
@@ -121,23 +122,28 @@ def lag_cells(found: Sequence[tuple[float, float]]) -> list[str]:
     return [*(f"{coarse:.0f}" for coarse, _ in found), *(f"{fine:.0f}" for _, fine in found)]
 
 
-def shared_table(logs: dict[int, Logs]) -> Table:
+Simulated = Mapping[str, Sequence[str]]
+"""The lags in simulated time by the names of the rows."""
+
+
+def shared_table(logs: dict[int, Logs], simulated: Simulated) -> Table:
     rows = []
     for number in sorted({1, 2, 4} & logs.keys()):
         for robot in SITUATIONS[number]:
             name = f"{number}: {robot.node.removesuffix('_node')} {robot.serial}, {robot.follows.removeprefix('/')}"
             thesis = THESIS_SHARED[robot.serial] if number == 1 else ("-", "-")
-            rows.append([name, *thesis, *lag_cells(lags(logs[number], robot, robot.follows))])
+            cells = lag_cells(lags(logs[number], robot, robot.follows))
+            rows.append([name, *thesis, *cells, *simulated.get(name, ("-", "-"))])
     head = ["situation and robot", "thesis: pan", "thesis: tilt", "pan or left", "tilt or right"]
     return Table(
         "Lag of positions behind setpoints, ms",
-        [*head, "finer: pan or left", "finer: tilt or right"],
+        [*head, *FINER],
         rows,
         [RESOLUTION],
     )
 
 
-def teleoperation_table(logs: dict[int, Logs]) -> Table:
+def teleoperation_table(logs: dict[int, Logs], simulated: Simulated) -> Table:
     robots = {robot.serial: robot for robot in SITUATIONS[3]}
     pairs = {
         "setpoint to robot 1": (robots[1], "/profile"),
@@ -157,8 +163,9 @@ def teleoperation_table(logs: dict[int, Logs]) -> Table:
         for robot in SITUATIONS[5][1:]
         if 5 in logs
     ]
+    rows = [[*row, *simulated.get(row[0], ("-", "-"))] for row in rows]
     head = ["situation, from and to", "thesis: pan", "thesis: tilt", "pan or left", "tilt or right"]
-    return Table("Lag in teleoperation, ms", [*head, "finer: pan or left", "finer: tilt or right"], rows)
+    return Table("Lag in teleoperation, ms", [*head, *FINER], rows)
 
 
 def tracking_table(logs: dict[int, Logs]) -> Table:

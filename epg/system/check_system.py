@@ -112,6 +112,7 @@ class _Checker:
                 links.append(link)
         self.check_domains(links)
         self.check_inputs()
+        self.check_world()
         self.check_participants()
         ages: dict[tuple[str, str], Fraction] = {}
         for link in links:
@@ -283,6 +284,32 @@ class _Checker:
                     span = self.system.targets[name].span
                     notes = [Note("the topic component", component.span)]
                     self.diagnostics.error("input-without-sender", span, message, hint=hint, notes=notes)
+
+    def check_world(self) -> None:
+        """Reports receivers of a topic of the world that expect other messages or units than the first one."""
+        first: dict[str, End] = {}
+        for end in self.system.world:
+            other = first.setdefault(end.topic, end)
+            if end.topic and other is not end:
+                self.check_same(other, end)
+
+    def check_same(self, first: End, second: End) -> None:
+        ends = (first, second)
+        views = [self.targets[end.target].view(end.component, receives=True) for end in ends]
+        wires = [_wires(end, self.targets[end.target].wires(receives=True)) for end in ends]
+        topic, hint = f"'{self.system.topic(first)}'", "use two topics, or change a component"
+        by_name = views[0].ros_type in _BY_NAME  # then each finds its own elements
+        fields = ["" if by_name else ", ".join(_fields(view)) for view in views]
+        types = [view.ros_type for view in views]
+        if types[0] != types[1] or fields[0] != fields[1]:
+            told = fields if types[0] == types[1] else types
+            message = f"{topic} cannot be two messages: {first} expects {told[0]}, {second} expects {told[1]}"
+            self.diagnostics.error("message-mismatch", second.span, message, hint=hint)
+        for port, wire in wires[0].items():
+            units = (wire.unit, wires[1][port].unit) if port in wires[1] else ("", "")
+            if all(units) and units[0] != units[1]:
+                message = f"{topic} cannot have two units: {first} expects {units[0]}, {second} expects {units[1]}"
+                self.diagnostics.error("unit-mismatch", second.span, message, hint=hint)
 
     def check_participants(self) -> None:
         """Reports more programs on one computer than DDS finds."""

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
 from types import MappingProxyType
@@ -51,7 +51,7 @@ class _Reader:
         listed = root.get("connections")
         connections = [pair for node in (listed.elements() if listed else ()) for pair in self.connections(node)]
         sends = root.get("world", "sends")
-        world = [end for node in (sends.elements() if sends else ()) for end in self.ends(node)]
+        world = [end for node in (sends.elements() if sends else ()) for end in self.world(node)]
         self.check_receivers(connections, world)
         plant = self.plant(root.get("plant"))
         return System(str(root["system"].value), self.path, self.targets, tuple(connections), tuple(world), plant)
@@ -167,6 +167,14 @@ class _Reader:
                 hint = "connect the ports in the model, or name another target"
                 self.diagnostics.error("connection-to-itself", connection.receiver.span, message, hint=hint)
         return result
+
+    def world(self, node: YamlNode) -> list[End]:
+        """The ends that other programs send to: each with a topic of its own, or all with the same."""
+        if not node.is_mapping:
+            return self.ends(node)
+        topic = str(node["topic"].value)
+        ends = [end for element in node["to"].elements() or (node["to"],) for end in self.ends(element)]
+        return [replace(end, topic=topic) for end in ends]
 
     def amount(self, ends: Sequence[End]) -> str:
         return "one target" if len(ends) == 1 else f"{len(ends)} targets"

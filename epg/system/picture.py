@@ -77,7 +77,7 @@ def draw_system(checked: CheckedSystem) -> str:
     for end, row in world:
         y = targets[end.target].y(row)
         picture.arrow([(-_WORLD, y), (0, y)], "line", f"{end}: from other programs")
-        picture.text(-_WORLD, y - 5, "world", "start", 10, "faint")
+        picture.text(-_WORLD, y - 5, end.topic or "world", "start", 10, "faint")
     return picture.render()
 
 

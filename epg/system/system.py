@@ -67,11 +67,15 @@ class SystemPlant:
 
 @dataclass(frozen=True)
 class End:
-    """A port of a target: a topic component, one of its ports, or a port of the model."""
+    """A port of a target: a topic component, one of its ports, or a port of the model.
+
+    ``topic`` is the name that the file gives to a topic of the world, or empty.
+    """
 
     target: str
     port: str
     span: Span
+    topic: str = ""
 
     def __str__(self) -> str:
         return f"{self.target}/{self.port}"
@@ -131,7 +135,7 @@ class System:
 
     def topic(self, sender: End) -> str:
         """The topic on which ``sender`` is sent, or received from other programs."""
-        return f"/{self.name}/{sender.target}/{sender.component}"
+        return f"/{self.name}/{sender.topic or f'{sender.target}/{sender.component}'}"
 
     def _ends(self, target: str) -> list[TopicEnd]:
         """The ends of a target.  Connections with the same topic component have one end."""

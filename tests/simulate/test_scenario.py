@@ -52,7 +52,7 @@ def test_wrong_scenario(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*/*.yaml")), ids=lambda path: f"{path.parent.name}-{path.stem}")
 def test_examples_are_valid(path: Path) -> None:
-    if path.name.endswith(".bindings.yaml"):
+    if path.name.endswith((".bindings.yaml", ".system.yaml")):
         return
     diagnostics = Diagnostics()
     assert load_scenario(path, diagnostics) is not None, format_diagnostics(diagnostics)

@@ -93,6 +93,24 @@ def test_topics_and_namespaces_follow_from_the_sender(folder: Path) -> None:
     assert system.applications["next_2"].period * 2000 == 1
 
 
+def test_several_targets_receive_a_topic_of_the_world(folder: Path) -> None:
+    text = """version: 1
+system: chain
+targets:
+  robot: {tcf: robot, model: model, bindings: bindings.yaml, count: 2}
+  other: {tcf: robot, model: model, bindings: bindings.yaml}
+world: {sends: [{topic: profile, to: robot/target}, other/target]}
+"""
+    (folder / "chain.system.yaml").write_text(text)
+    system = checked(folder)
+    received = {name: topics(system, name)["target"].split()[0] for name in system.applications}
+    assert received == {
+        "robot_1": "/chain/profile",
+        "robot_2": "/chain/profile",
+        "other": "/chain/other/target",
+    }
+
+
 def test_the_files_of_a_target_do_not_change_others(folder: Path) -> None:
     before = {name: texts(checked(folder), name) for name in ("first", "next_1", "next_2")}
     robot = folder / "robot.tcf"
