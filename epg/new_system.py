@@ -39,12 +39,12 @@ def write_system_project(checked: CheckedSystem, folder: Path, diagnostics: Diag
     """
     system, roots = checked.system, checked.loader.roots
     axes = _axes(checked)
-    sent = {str(end) for end in system.world}
+    sent = {_setpoint(end) for end in system.world}
     plan = SystemPlan(
         name=system.name,
         system=Path(os.path.relpath(system.path, folder)).as_posix(),
         targets=tuple(system.targets),
-        topics=[axis.setpoint for axis in axes if axis.setpoint in sent],
+        topics=list(dict.fromkeys(axis.setpoint for axis in axes if axis.setpoint in sent)),
         axes=axes,
         versions={"epg": epg.__version__},
     )
@@ -58,6 +58,11 @@ def write_system_project(checked: CheckedSystem, folder: Path, diagnostics: Diag
     return SystemProject(plan, files)
 
 
+def _setpoint(end: End) -> str:
+    """The name in scenarios of a topic of the world."""
+    return end.topic or str(end)
+
+
 def _axes(checked: CheckedSystem) -> list[MovedAxis]:
     """The axes of the plants: those whose setpoint comes from other programs, and those that follow another axis."""
     system = checked.system
@@ -69,7 +74,7 @@ def _axes(checked: CheckedSystem) -> list[MovedAxis]:
         return f"{end.target}/plant.{section}.{found}" if found else ""
 
     pairs: Iterable[tuple[str, End]] = [
-        *((str(end), end) for end in system.world),
+        *((_setpoint(end), end) for end in system.world),
         *((signal(connection.sender, "outputs"), connection.receiver) for connection in system.connections),
     ]
     axes = {}

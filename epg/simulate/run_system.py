@@ -8,7 +8,6 @@ import time
 from array import array
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +20,7 @@ from epg.simulate.load_scenario import load_scenario
 from epg.simulate.plot import plot
 from epg.simulate.reference import load_reference
 from epg.simulate.scenario import FAILURES, Scenario
-from epg.simulate.setpoints import failure_lines, setpoint_rows, write_setpoints
+from epg.simulate.setpoints import Row, failure_lines, setpoint_rows, write_setpoints
 from epg.simulate.tracking import Check, WindowResult, write_tracking
 
 INPUTS, TRACES = "inputs", "traces"
@@ -140,13 +139,13 @@ def _write_inputs(scenario: Scenario, interface: Interface, output: Path) -> lis
     (output / INPUTS).mkdir(exist_ok=True)
     options = ["--duration", repr(float(scenario.duration)), "--trace", str(output / TRACES)]
     options += ["--topics", str(output / "topics.csv"), "--statistics", str(output / "statistics.json")]
-    sent: set[tuple[Fraction, str, float | str]] = set()
+    sent: dict[Row, None] = {}
     for target, topics in interface.topics.items():
         file = output / INPUTS / f"{target}.csv"
         rows = setpoint_rows(scenario, target=target, topics=topics)
         write_setpoints(rows, file)
         options += ["--setpoints", f"{target}={file}"]
-        sent |= {row for row in rows if not row[1].startswith("$")}
+        sent |= dict.fromkeys(row for row in rows if not row[1].startswith("$"))
     # The same as a recording of the network: each message once, also if several targets receive it.
     write_setpoints(sorted(sent, key=lambda row: row[:2]), output / "setpoints.csv")
     events = output / "events.csv"

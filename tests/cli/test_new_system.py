@@ -75,6 +75,19 @@ def test_the_scenario_moves_the_axes_of_the_plants(system: Path) -> None:
     }
 
 
+def test_the_scenario_sends_a_topic_of_several_targets_once(system: Path) -> None:
+    shared = "{topic: profile, to: [leader/tilt_subscriber, far/tilt_subscriber]}"
+    text = SYSTEM.replace("leader/tilt_subscriber, far/tilt_subscriber", shared)
+    without_plant, plant = "bindings: jiwy.bindings.yaml}", "plant: plant, plant_bindings: plant.bindings.yaml}"
+    text = text.replace(without_plant, f"{without_plant[:-1]}, {plant}")
+    system.write_text(text)
+    assert new(system.parent, system) == 0
+    scenario = load_scenario(system.parent / "scenario.yaml", Diagnostics())
+    assert scenario is not None and set(scenario.profiles) == {"leader/pan_subscriber", "profile"}
+    axes = {axis.name: axis.setpoint for axis in scenario.axes}
+    assert (axes["leader_tilt_subscriber"], axes["far_tilt_subscriber"]) == ("profile", "profile")
+
+
 def test_the_scenario_of_one_plant_for_several_targets(system: Path) -> None:
     """An axis belongs to the target to which its port of the plant is bound."""
     text = (

@@ -297,7 +297,8 @@ MODELINE = re.compile(r"^# yaml-language-server: \$schema=(\S+)$", re.MULTILINE)
 def test_files_name_their_schema(tree: str) -> None:
     """By a path that is valid in a checkout, and for ``targets`` also in a wheel."""
     for path in sorted((ROOT / tree).glob("*/*")):
-        name = {".tcf": "tcf", ".yaml": "scenario" if path.name == "tracking.yaml" else "bindings"}.get(path.suffix)
+        kind = path.suffixes[-2] if path.suffix == ".yaml" and len(path.suffixes) > 1 else ""
+        name = {".tcf": "tcf", ".yaml": kind.removeprefix(".") or "scenario"}.get(path.suffix)
         if name is not None:
             found = MODELINE.search(path.read_text(encoding="utf-8"))
             assert found, path
