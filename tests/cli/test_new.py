@@ -492,7 +492,7 @@ def test_editors_find_the_schema_of_each_file(tmp_path: Path) -> None:
         patterns = {
             pattern: json.loads((folder / place).read_text()) for place, pattern in settings["yaml.schemas"].items()
         }
-        assert set(patterns) == {"*.tcf", "*bindings.yaml", "*scenario.yaml", "model.yaml"}
+        assert set(patterns) == {"*.tcf", "*bindings.yaml", "*scenario.yaml", "model.yaml", "*.system.yaml"}
         checked = 0
         for file in sorted(folder.rglob("*")):
             for pattern, schema in patterns.items():
