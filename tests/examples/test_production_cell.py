@@ -99,6 +99,10 @@ def test_an_hour(program: Path) -> None:
     assert stated and end["moulded"] == int(stated.group(1))
 
 
+def test_the_scenario(project: Project) -> None:
+    assert "all 2 limits of the scenario hold" in project.build("--target", "killed")
+
+
 @pytest.mark.parametrize("machine", FAULTS.MACHINES)
 def test_a_machine_is_killed_and_restarted(program: Path, machine: str) -> None:
     """Without it, the line stops within a round or two; when it is back, the blocks go round again."""

@@ -252,6 +252,7 @@ static void check(cell_outputs_t *outputs)
             outputs->first_collision = outputs->first_collision > 0.0 ? outputs->first_collision : (double)i;
         }
     }
+    outputs->faults = outputs->collisions + outputs->lost;
     memcpy(faults_before, faults, sizeof faults);
     memset(faults, 0, sizeof faults);
 }

@@ -47,6 +47,7 @@ typedef struct cell_outputs {
     bool robot_has_block;
     double collisions;                     /**< number of cases in which two parts were in one space */
     double first_collision;                /**< the first of them: a number of `cell_fault_t` */
+    double faults;                         /**< collisions and lost blocks */
     double lost;                           /**< blocks that were dropped */
     double moulded;                        /**< blocks that have been taken out of the mould */
     double last_moulded;                   /**< time of the newest of them, s */
