@@ -26,7 +26,7 @@ FAULTS = 5
 FIRST, LAST = 1.0, 9.0  # s: when they begin
 WATCHDOG = 0.1  # s, of all boards
 LONGEST_DEATH, LONGEST_SILENCE = 3.0, 6.0  # s
-DURATION = 32.0  # s: with all faults over after 15 s, each machine has time to go on
+DURATION = 36.0  # s: with all faults over after 15 s, each machine has time to go on
 QUIET = 15.0  # s: a block must have been moulded in this time at the end of a run
 
 
