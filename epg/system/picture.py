@@ -1,17 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws a system: its targets below each other, and a line for each topic that one target sends to others.
 
-A line leaves its sender to the right, goes up or down in a lane of its own, and has an arrow at each receiver.  Inputs
-from other programs come from the left.
+A line leaves its sender to the right, goes up or down in a separate lane, and has an arrow at each receiver.  Inputs
+from other programs come from the left.  The plant of the system is on the left of all, with a line to each target.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from epg.graph.svg import WIRES, Picture, width
 from epg.quantity import show
+from epg.resolve.application import Plant
 from epg.system.check_system import CheckedSystem, Link
 from epg.system.system import End
 
@@ -74,6 +76,8 @@ def draw_system(checked: CheckedSystem) -> str:
         _draw_target(picture, target, wide)
     for number, line in enumerate(lines):
         _draw_line(picture, line, targets, wide, wide + labels + number * _LANE, number % WIRES)
+    if checked.plant is not None:
+        _draw_plant(picture, checked.plant, list(targets.values()), _WORLD if world else 0.0)
     for end, row in world:
         y = targets[end.target].y(row)
         picture.arrow([(-_WORLD, y), (0, y)], "line", f"{end}: from other programs")
@@ -135,7 +139,33 @@ def _draw_line(
         picture.arrow([(edge, y), (lane, y), (lane, end), (edge, end)], style, f"{line.title} to {receiver}")
 
 
+def _draw_plant(picture: Picture, plant: Plant, targets: Sequence[_Target], world: float) -> None:
+    """Draws the plant.  ``world`` is the room for inputs from other programs between it and the targets."""
+    wires = Counter(wire.component.name.partition("/")[0] for wire in (*plant.inputs, *plant.outputs))
+    facts = f"simulated, {show(plant.model.step, 'time')}"
+    wide = max(width(plant.model.name, 13), width("plant", 11), width(facts, 10)) + 24
+    right = -world - 30 - max((width(_wires(count), 10) for count in wires.values()), default=0.0)
+    bottom = targets[-1].top + targets[-1].height
+    picture.box(right - wide, 0, wide, bottom, "model")
+    for down, text, size, style in (
+        (17.0, plant.model.name, 13, "bold"),
+        (31.0, "plant", 11, ""),
+        (45.0, facts, 10, "faint"),
+    ):
+        picture.text(right - wide / 2, down, text, "middle", size, style)
+    for target in targets:
+        if wires[target.name]:
+            y = target.top + 20
+            picture.line([(right, y), (0, y)], "earth", f"{target.name} senses and moves {plant.model.name}")
+            picture.text(right + 6, y - 5, _wires(wires[target.name]), "start", 10, "faint")
+
+
+def _wires(count: int) -> str:
+    return f"{count} wire{'' if count == 1 else 's'}"
+
+
 def _description(checked: CheckedSystem) -> str:
     links = [f"{link.connection.sender} to {link.connection.receiver}" for link in checked.links]
     sends = [f"other programs to {end}" for end in checked.system.world]
-    return f"The targets {', '.join(checked.applications)}. " + "; ".join([*links, *sends]) + "."
+    plant = f" The plant {checked.plant.model.name}." if checked.plant is not None else ""
+    return f"The targets {', '.join(checked.applications)}.{plant} " + "; ".join([*links, *sends]) + "."

@@ -207,6 +207,15 @@ def test_pictures_of_systems(folder: Path, capsys: pytest.CaptureFixture[str]) -
     assert [line.title for line in svg.lines if "other programs" in line.title] == ["first/target: from other programs"]
 
 
+def test_the_plant_of_a_system_in_its_picture(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["graph", str(ROOT / "examples/production_cell/production_cell.system.yaml")]) == 0
+    svg = Svg(capsys.readouterr().out)
+    assert not svg.overlaps() and not svg.outside()
+    wires = [line.title for line in svg.lines if line.title.endswith("moves Production_Cell")]
+    assert len(wires) == 6 and wires[0] == "feeder_belt senses and moves Production_Cell"
+    assert "6 wires" in svg.words
+
+
 def test_agents_of_a_system(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = folder / "chain.system.yaml"
     numbers = ["E6614103E72B8C2F", "E6614103E72B8C30", "E6614103E72B8C31"]
