@@ -4,7 +4,7 @@
 #   epg_add_target(<name> TCF <file> MODEL <folder> BINDINGS <file> ...)   library EPG::<name>: model, tables, runtime
 #   epg_add_executable(<executable> EPG::<name>)                           firmware with EPG's own main()
 #   epg_add_model(<name> MODEL <folder> [INSTANCES <n>])                   library EPG::<name>: a model alone
-#   epg_add_system(<name> SYSTEM <file>)                                   simulation and images of several targets
+#   epg_add_system(<name> SYSTEM <file> [TARGETS <target>...])             simulation and images of several targets
 #   epg_use_versions(<SDK> <version> ...)                                  chooses the versions of the project's SDKs
 #   epg_add_simulation(<name> EXECUTABLE <host executable> SCENARIO <file>) target that runs and judges a simulation
 #

@@ -1,21 +1,35 @@
 # SPDX-License-Identifier: Apache-2.0
-# epg_add_system(<name> SYSTEM <file>)
+# epg_add_system(<name> SYSTEM <file> [TARGETS <target>...])
 #
 # Makes the executable <name>, which simulates all targets of a system, their messages and their plants.  Also makes the
-# CMake target <name>_images, which builds the images of all targets whose families have a project for them, each in its
-# own folder below <name>_images.  The CMake target <name>_flash builds them, too, and writes them to the boards.  An
-# ordinary build builds neither.
+# CMake target <name>_images, which builds the images of all targets that have a project for them, each in its own folder
+# below <name>_images.  The CMake target <name>_flash builds them, too, and writes them to the boards.  An ordinary build
+# builds neither.
 #
 #   <name>  name of the executable
 #   SYSTEM  the file of the system; a relative path begins at the current source folder
 #
+# With TARGETS, it is for a firmware project.  It makes the library EPG::<target> of each of these targets, as
+# epg_add_target(<target> SYSTEM <file>) does, and nothing else.  <name> is then the name of the call in messages.
+#
 # Each target becomes a shared object beside the executable.  Needs Linux.  It stops with an error if an argument is
 # wrong.  A mistake in the files is reported, and the configure run fails at its end.
 function(epg_add_system name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "SYSTEM" "")
-  _epg_require(epg_add_system "SYSTEM <file>" "${name}" "${arg_UNPARSED_ARGUMENTS}" "${arg_KEYWORDS_MISSING_VALUES}" SYSTEM)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "SYSTEM" "TARGETS")
+  _epg_require(epg_add_system "SYSTEM <file> [TARGETS <target>...]" "${name}" "${arg_UNPARSED_ARGUMENTS}"
+    "${arg_KEYWORDS_MISSING_VALUES}" SYSTEM)
+  if(DEFINED arg_TARGETS)
+    foreach(target IN LISTS arg_TARGETS)
+      epg_add_target("${target}" SYSTEM "${arg_SYSTEM}")
+    endforeach()
+    if(COMMAND _epg_zephyr_hand_on) # find_package(Zephyr) reads variables in the scope of the caller
+      _epg_zephyr_hand_on()
+    endif()
+    return()
+  endif()
   if(NOT CMAKE_SYSTEM_NAME STREQUAL "Linux")
-    message(FATAL_ERROR "epg_add_system(${name}): systems are simulated on Linux only, and this project is for ${CMAKE_SYSTEM_NAME}")
+    message(FATAL_ERROR "epg_add_system(${name}): systems are simulated on Linux only, and this project is for ${CMAKE_SYSTEM_NAME}.
+In a firmware project, name its targets: epg_add_system(${name} SYSTEM ${arg_SYSTEM} TARGETS <target>...)")
   endif()
   get_filename_component(file "${arg_SYSTEM}" ABSOLUTE BASE_DIR "${CMAKE_CURRENT_SOURCE_DIR}")
   set(arguments --system "${file}" --source-dir "${CMAKE_SOURCE_DIR}" --caller "${CMAKE_CURRENT_LIST_FILE}")
@@ -85,6 +99,7 @@ function(_epg_system_images name system images)
   set(here "${CMAKE_CURRENT_FUNCTION_LIST_DIR}")
   add_custom_target(${name}_images
     COMMAND ${command} "${CMAKE_COMMAND}" "-DEPG_IMAGES=${images}" "-DEPG_DIR=${here}" "-DEPG_IMAGE_SYSTEM=${system}"
+      "-DEPG_SOURCE=${CMAKE_SOURCE_DIR}"
       "-DEPG_BUILD=${CMAKE_CURRENT_BINARY_DIR}/${name}_images" "-DEPG_PYTHON=${python}"
       -P "${here}/epg_build_images.cmake"
     COMMENT "Images of the system ${name}" USES_TERMINAL VERBATIM)

@@ -42,7 +42,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.cli.system import target_of
     from epg.source import Span
     from epg.system.check_system import check_system
-    from epg.system.flash import Flasher, UnusableTool, plan
+    from epg.system.flash import Flasher, UnusableTool, flashing_of, plan
     from epg.system.images import images_of
     from epg.system.load_system import load_system
 
@@ -50,7 +50,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     for name in options.target or ():
         target_of(system, name, Span.of_argument(name, "--target"), diagnostics)
     checked = diagnostics.checked(check_system(system, user_roots(), diagnostics))
-    built = [name for name, _, _ in images_of(checked)]
+    built = [name for name, _, _ in images_of(checked) if flashing_of(checked, name) is not None]
     if not built and not options.target:
         message = "none of its targets has an image that EPG builds"
         hint = "docs/systems.md lists the platforms with images"

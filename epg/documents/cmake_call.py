@@ -11,7 +11,9 @@ from epg.source import Span
 
 def caller_span(file: str, name: str) -> Span:
     """The position of the call that makes the target ``name``; the file as a whole if it cannot be found."""
-    return _find(file, rf"epg_add_(?:target|model)\s*\(\s*({re.escape(name)})\b") or Span(file)
+    word = rf"({re.escape(name)})\b"
+    call = _find(file, rf"epg_add_(?:target|model)\s*\(\s*{word}")
+    return call or _find(file, rf"epg_add_system\s*\([^)]*\bTARGETS\b[^)]*?\b{word}") or Span(file)
 
 
 def setting_span(file: str | None, name: str, setting: str) -> Span:

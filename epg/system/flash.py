@@ -81,6 +81,12 @@ class Job:
         return [_ARGUMENT.sub(lambda match: values.get(match[1], match[0]), word) for word in words]
 
 
+def flashing_of(checked: CheckedSystem, name: str) -> Flashing | None:
+    """How the boards of a target are flashed; None if its family of chips does not say it."""
+    family = checked.loader.family(checked.applications[name].target.soc.family)
+    return None if family is None else family.flash
+
+
 def plan(checked: CheckedSystem, names: Collection[str], images: Path, diagnostics: Diagnostics) -> list[Job]:
     """The jobs of the targets ``names``, in the order of the file.  Reports all mistakes."""
     built = {name for name, _, _ in images_of(checked)}
@@ -92,8 +98,7 @@ def plan(checked: CheckedSystem, names: Collection[str], images: Path, diagnosti
         if name not in names:
             continue
         application, target = checked.applications[name], checked.system.targets[name]
-        family = checked.loader.family(application.target.soc.family)
-        flashing = None if family is None else family.flash
+        flashing = flashing_of(checked, name)
         if name not in built:
             reason = f"EPG builds no image for the platform '{application.target.platform.name}'"
             hint = "docs/systems.md lists the platforms with images: flash the others with the tools of their projects"

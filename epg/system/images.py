@@ -15,12 +15,16 @@ _UNFINISHED = re.compile(r"_pre[0-9]+$")
 
 
 def images_of(checked: CheckedSystem) -> list[tuple[str, Path, str]]:
-    """The targets whose family has a project for images: the name, the project's folder, and the SDK's board."""
+    """The targets with a project for their image: the name, the project's folder, and the SDK's board.
+
+    It is the target's own project, or that of the family or the platform.
+    """
     found = []
     for name, application in checked.applications.items():
         target = application.target
-        folder = None if target.platform.family is None else target.platform.family.folder / "image"
-        if folder is not None and folder.is_dir():
+        layer = target.platform.family or target.platform
+        folder = checked.system.targets[name].project or layer.folder / "image"
+        if folder.is_dir():
             found.append((name, folder, target.board.sdks.get(target.platform.sdk, "")))
     return found
 

@@ -93,6 +93,7 @@ class _Reader:
                 settings=settings,
                 serial=serial,
                 probe=probe,
+                project=self.project(node.get("project")),
                 clock=self.clock(node.get("clock")),
                 span=span,
             )
@@ -111,6 +112,19 @@ class _Reader:
     def file(self, node: YamlNode, key: str) -> Path | None:
         found = node.get(key)
         return None if found is None else self.path.parent / str(found.value)
+
+    def project(self, node: YamlNode | None) -> Path | None:
+        """The folder of a firmware project, or None after reporting that there is no project."""
+        if node is None:
+            return None
+        folder = self.path.parent / str(node.value)
+        if not (folder / "CMakeLists.txt").is_file():
+            hint = "name the folder of the CMakeLists.txt that calls epg_add_target(... SYSTEM ...)"
+            self.diagnostics.error(
+                "file-not-found", node.span, f"there is no CMakeLists.txt in '{node.value}'", hint=hint
+            )
+            return None
+        return folder
 
     def serials(self, node: YamlNode | None, count: int) -> Sequence[str | None]:
         if node is None:

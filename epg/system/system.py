@@ -35,7 +35,8 @@ class Transport:
 class SystemTarget:
     """One target.  ``settings`` is a part of a ``.tcf``.  ``span`` is the position of the name.
 
-    ``serial`` is the serial number of the board, ``probe`` that of its debug probe.
+    ``serial`` is the serial number of the board, ``probe`` that of its debug probe.  ``project`` is the folder of the
+    firmware project that builds its image, None for EPG's own.
     """
 
     name: str
@@ -47,6 +48,7 @@ class SystemTarget:
     settings: YamlNode | None
     serial: str | None
     probe: str | None
+    project: Path | None
     clock: Clock
     span: Span
 

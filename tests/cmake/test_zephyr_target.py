@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import re
+import shutil
 import sys
 from pathlib import Path
 
@@ -232,3 +233,32 @@ def test_the_target_that_connects_says_how_zephyr_is_built(
     rules = (project.build_folder / "build.ninja").read_text()
     (said,) = re.findall(r"__main__\.py connect --name robot .*--build-dir (\S+) --built-by (\w+)", rules)
     assert said == (str((project.build_folder / above).resolve()), built_by)
+
+
+def test_the_image_of_a_target_of_a_system(project: Project) -> None:
+    """EPG's own project, which `<name>_images` of epg_add_system() builds."""
+    (project.source / "cell.system.yaml").write_text(
+        "version: 1\nsystem: cell\n"
+        "targets: {robot: {tcf: robot, model: ../robot/model, bindings: ../robot/bindings.yaml}}\n"
+        "world: {sends: [robot/target]}\n"
+    )
+    image = ROOT / "targets/platforms/zephyr/image"
+    (project.source / "CMakeLists.txt").write_text((image / "CMakeLists.txt").read_text())
+    given = (f"-DEPG_IMAGE_SYSTEM={project.source}/cell.system.yaml", "-DEPG_IMAGE=robot", "-DEPG_IMAGE_BOARD=rpi_pico")
+    output = project.configure(*FINE, *given)
+    assert seen(output, "Board") == "rpi_pico"
+    assert seen(output, "Shields") == "epg_robot"
+    assert "robot_start()" in (project.build_folder / "epg/robot_main.c").read_text()
+    assert (image / "prj.conf").is_file(), "Zephyr needs this file"
+
+    project.edit("CMakeLists.txt", "epg_add_target(${EPG_IMAGE} ", "epg_add_system(some TARGETS robot ")
+    output = project.configure(*FINE, *given)
+    assert seen(output, "Board") == "rpi_pico"
+    assert seen(output, "Modules") == str(ROOT)
+    shutil.rmtree(project.build_folder)
+    output = project.fails_to_configure(*FINE, *given[:2], "-DEPG_IMAGE_BOARD=nucleo_h743zi")
+    assert "epg_add_target(robot): its target is for Zephyr's board 'rpi_pico', and BOARD is" in joined(output)
+    project.environment["ZEPHYR_BASE"] = str(project.source / "no Zephyr")
+    assert "The environment variable ZEPHYR_BASE does not lead to the Zephyr" in project.fails_to_configure(
+        *FINE, *given
+    )

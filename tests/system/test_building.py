@@ -24,7 +24,7 @@ LISTS = """cmake_minimum_required(VERSION 3.22)
 project(robots LANGUAGES C CXX)
 find_package(EPG REQUIRED)
 epg_add_target(leader SYSTEM two.system.yaml)
-epg_add_target(follower SYSTEM two.system.yaml)
+epg_add_system(others SYSTEM two.system.yaml TARGETS follower)
 """
 
 
@@ -68,6 +68,9 @@ def test_mistakes_are_reported_with_their_place(tmp_path: Path) -> None:
     output = project.fails_to_configure()
     assert "CMakeLists.txt:4:16: error: the system 'two_jiwys' has no target 'leder'" in output
     assert "did you mean 'leader'?" in output
+    project.edit("CMakeLists.txt", "TARGETS follower", "TARGETS folower")
+    output = project.fails_to_configure()
+    assert "CMakeLists.txt:5:54: error: the system 'two_jiwys' has no target 'folower'" in output
     project.edit("CMakeLists.txt", "target(leder SYSTEM", "target(leader TCF a.tcf SYSTEM")
     assert "the file of the system says this: remove TCF" in project.fails_to_configure()
     project.edit("CMakeLists.txt", "TCF a.tcf SYSTEM two.system", "SYSTEM three.system")

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The images of a system: one command builds all of them, and one that cannot be built does not stop the others."""
+"""The images of a system: one command builds all of them, and one that cannot be built does not stop the others.
+
+`tests/cmake/test_zephyr_target.py` configures an image of Zephyr quickly; here one is built.
+"""
 
 from __future__ import annotations
 
@@ -9,15 +12,22 @@ from pathlib import Path
 
 import pytest
 
+from epg.cli.main import main
 from tests.cmake.project import ROOT, Project
 from tests.emulator.toolchain import arm_gcc, pico_sdk, skip_if_missing, tool
+from tests.zephyr.workspace import c_library, workspace
 
 SYSTEM = """version: 1
 system: two
 targets:
   leader: {tcf: rpi_pico_bare_metal_jiwy, model: model, bindings: jiwy.bindings.yaml}
   follower: {tcf: nucleo_h743zi_bare_metal_jiwy, model: model, bindings: jiwy.bindings.yaml}
-  watcher: {tcf: host_jiwy, model: model, bindings: jiwy.bindings.yaml, set: {communication: {middleware: xrce}}}
+  watcher:
+    tcf: host_jiwy
+    model: model
+    bindings: jiwy.bindings.yaml
+    set: {communication: {middleware: xrce}}
+    project: watcher
 connections:
   - {from: leader/pan_publisher, to: [follower/pan_subscriber, watcher/pan_subscriber]}
   - {from: leader/tilt_publisher, to: [follower/tilt_subscriber, watcher/tilt_subscriber]}
@@ -27,6 +37,12 @@ LISTS = """cmake_minimum_required(VERSION 3.22)
 project(two LANGUAGES C CXX)
 find_package(EPG REQUIRED)
 epg_add_system(two SYSTEM two.system.yaml)
+"""
+OWN = """cmake_minimum_required(VERSION 3.22)
+find_package(EPG REQUIRED)
+project(watcher C CXX)
+epg_add_target(watcher SYSTEM ../two.system.yaml)
+epg_add_executable(watcher_program EPG::watcher)
 """
 
 
@@ -39,6 +55,8 @@ def project(tmp_path: Path) -> Project:
     shutil.copy(ROOT / "examples/jiwy/jiwy.bindings.yaml", made.source)
     (made.source / "two.system.yaml").write_text(SYSTEM)
     (made.source / "CMakeLists.txt").write_text(LISTS)
+    (made.source / "watcher").mkdir()
+    (made.source / "watcher/CMakeLists.txt").write_text(OWN)
     return made
 
 
@@ -50,7 +68,7 @@ def test_one_command_builds_all_images(project: Project) -> None:
     assert "PICO_SDK_PATH" in output
     images = project.build_folder / "two_images"
     assert b"/two/leader/pan_publisher" in (images / "follower/follower_firmware.elf").read_bytes()
-    assert not (images / "watcher").exists(), "epg_add_target() builds programs for this computer"
+    assert (images / "watcher/watcher_program").is_file(), "a project of its own is built on any platform"
 
     del project.environment["PICO_SDK_PATH"]
     output = project.build("--target", "two_images")
@@ -65,11 +83,33 @@ def test_one_command_builds_all_images(project: Project) -> None:
     assert "the board of 'leader' is not known" in output and "the board of 'follower' is not known" in output
 
 
+def test_an_image_of_zephyr(project: Project, capfd: pytest.CaptureFixture[str]) -> None:
+    skip_if_missing(lambda: workspace("rpi_pico"), c_library)
+    here = workspace("rpi_pico")
+    project.environment |= here.environment() | {"ZEPHYR_MODULES": ";".join(str(module) for module in here.modules)}
+    project.edit("two.system.yaml", "rpi_pico_bare_metal_jiwy", "rpi_pico_zephyr_jiwy")
+    project.edit(
+        "two.system.yaml", "nucleo_h743zi_bare_metal_jiwy", "host_jiwy, set: {communication: {middleware: xrce}}"
+    )
+    project.edit("two.system.yaml", "leader: {", "leader: {serial: E6614103E7452D2F, ")
+    project.configure(f"-DPython3_EXECUTABLE={here.python}")
+    assert compiled(project.build("--target", "two_images")) == {"leader", "watcher"}
+    assert compiled(project.build("--target", "two_images")) == set()
+    project.edit("two.system.yaml", "system: two", "# a comment\nsystem: two")
+    output = project.build("--target", "two_images")
+    assert compiled(output) == {"leader"}, "Zephyr links again after each configure run"
+    assert "leader_app.c" not in output
+
+    images = project.build_folder / "two_images"
+    assert main(["flash", str(project.source / "two.system.yaml"), "--images", str(images), "--dry-run"]) == 0
+    assert f"load -v -x {images}/leader/zephyr/zephyr.elf --ser E6614103E7452D2F" in capfd.readouterr().out
+
+
 def compiled(output: str) -> set[str]:
     """The images for which something was compiled or linked."""
     found, image = set(), ""
     for line in output.splitlines():
         image = line.removeprefix("-- Image of ") if line.startswith("-- Image of ") else image
-        if re.search(r"Building C|Building ASM|Linking", line):
+        if re.search(r"Building C|Building ASM|Linking C", line):
             found.add(image)
     return found
