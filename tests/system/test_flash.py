@@ -271,7 +271,7 @@ def test_the_page(bench: Bench, capfd: pytest.CaptureFixture[str], monkeypatch: 
     page = (ROOT / "docs/systems.md").read_text()
     system = page.split("<!-- two jiwys -->\n```yaml\n")[1].split("```")[0]
     for target, serial in (("leader", FIRST), ("follower", SECOND)):
-        system = re.sub(rf"(  {target}: .*)}}", rf"\1, serial: {serial}}}", system)
+        system = system.replace(f"  {target}: {{", f"  {target}: {{serial: {serial}, ")
     path = bench.folder / "two_jiwys.system.yaml"
     path.write_text(system)
     monkeypatch.chdir(bench.folder)
