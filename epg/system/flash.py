@@ -29,7 +29,7 @@ from epg.emit.outputs import application_outputs
 from epg.resolve.application import Application
 from epg.ros.robot import Robot, robot_of
 from epg.system.check_system import CheckedSystem
-from epg.system.images import image_file, images_of
+from epg.system.images import built_hash, image_file, images_of
 from epg.system.system import SystemTarget
 from epg.tools.find_tool import Surroundings, find_tool
 from epg.tools.tools import Tool
@@ -112,7 +112,10 @@ def plan(checked: CheckedSystem, names: Collection[str], images: Path, diagnosti
         if reason or flashing is None:
             diagnostics.error("not-flashable", target.span, f"EPG cannot flash '{name}': {reason}", hint=hint)
             continue
-        image = image_file(target, description["hash"], images, diagnostics)
+        hash = str(description["hash"])
+        if target.project is not None:  # it can give EPG more arguments, such as IOC
+            hash = built_hash(target, images) or hash
+        image = image_file(target, hash, images, diagnostics)
         chosen = _board(target, flashing, by_family[application.target.soc.family], diagnostics)
         if image is not None and chosen is not None:
             board, serial, shown = chosen

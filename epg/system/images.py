@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
@@ -27,6 +28,15 @@ def images_of(checked: CheckedSystem) -> list[tuple[str, Path, str]]:
         if folder.is_dir():
             found.append((name, folder, target.board.sdks.get(target.platform.sdk, "")))
     return found
+
+
+def built_hash(target: SystemTarget, images: Path) -> str:
+    """The hash of the files that the newest build of a target has generated; empty if there is none."""
+    try:
+        text = (images / target.name / "epg" / target.name / f"{target.name}.json").read_text(encoding="utf-8")
+        return str(json.loads(text)["hash"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return ""
 
 
 def image_file(target: SystemTarget, hash: str, images: Path, diagnostics: Diagnostics) -> Path | None:

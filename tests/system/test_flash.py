@@ -395,6 +395,21 @@ def test_an_image_of_other_files(bench: Bench, capfd: pytest.CaptureFixture[str]
     assert not bench.calls()
 
 
+def test_an_image_of_a_project_of_the_users_own(bench: Bench, capfd: pytest.CaptureFixture[str]) -> None:
+    """The project's call can have other arguments, so the hash is that of its build."""
+    folder = bench.folder / "build/three_images/third"
+    (folder / "epg/third").mkdir(parents=True)
+    (folder / "robot.elf").write_text("0123456789abcdef")
+    (folder / "epg/third/third.json").write_text('{"hash": "0123456789abcdef"}')
+    run(bench, "--target", "third", status=1)
+    assert "[image-outdated]" in capfd.readouterr().err
+    (bench.folder / "firmware").mkdir()
+    (bench.folder / "firmware/CMakeLists.txt").touch()
+    bench.edit("third: {", "third: {project: firmware, ")
+    run(bench, "--target", "third")
+    assert bench.written() == {PROBE: "robot"}
+
+
 def test_tools_that_are_missing(
     bench: Bench, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
