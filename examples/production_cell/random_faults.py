@@ -22,6 +22,18 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 MACHINES = ("feeder_belt", "feeder", "door", "extractor", "extraction_belt", "robot")
+CHECKS = (  # cell_fault_t in plant/cell.h
+    "none",
+    "blocks overlap",
+    "the feeder belt runs with the feeder",
+    "the feeder belt runs with the robot",
+    "the extraction belt runs with the extractor",
+    "the extraction belt runs with the robot",
+    "the door is on the extractor",
+    "the feeder meets the extractor",
+    "the feeder pushes at the open door",
+    "a block is jammed",
+)
 FAULTS = 5
 FIRST, LAST = 1.0, 9.0  # s: when they begin
 WATCHDOG = 0.1  # s, of all boards
@@ -62,7 +74,7 @@ def run(program: Path, events: Iterable[tuple[float, str, str]], duration: float
 def verdict(end: dict[str, float]) -> str:
     """What is wrong at the end of a run with random faults; nothing: an empty text."""
     if end["collisions"] > 0:
-        return f"two parts in one space (check {end['first_collision']:.0f})"
+        return f"two parts in one space: {CHECKS[int(end['first_collision'])]}"
     if end["lost"] > 0:
         return "a block is lost"
     return "" if end["last_moulded"] > DURATION - QUIET else "the blocks stand still"

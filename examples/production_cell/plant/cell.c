@@ -30,6 +30,7 @@ static const double door_reach = 0.195;     /* m: the extractor is below the doo
 static const double extractor_reach = 0.25; /* m: its place in the mould */
 static const double radius = 0.2;           /* m of the robot's arm */
 static const double magnet_reach = 0.006;   /* m */
+static const double drop_reach = 0.012;     /* m from a place, at which a block can be put down */
 static const double over_belt = 0.05;       /* m: an arm is above a belt */
 static const double moving = 0.01;          /* m/s: slower is the rest of a stop */
 
@@ -162,6 +163,11 @@ static void carry(block_t *block, double way_feeder_belt, double way_extraction_
     }
 }
 
+static bool is_near(double x, double y, double place_x, double place_y)
+{
+    return hypot(x - place_x, y - place_y) < drop_reach;
+}
+
 /** The magnet of an arm whose gripper is at (x, y). */
 static void hold(place_t arm, bool release, double x, double y, cell_outputs_t *outputs)
 {
@@ -182,14 +188,13 @@ static void hold(place_t arm, bool release, double x, double y, cell_outputs_t *
             }
         }
     } else if (held != NULL && release) {
-        const bool on_belt = fabs(x - belt_length) < 0.012 ? fabs(y) < 0.012 : fabs(x) < 0.012 && fabs(y) < 0.012;
-        if (on_belt) {
-            held->place = ON_EXTRACTION_BELT;
-            held->way = belt_length - x;
-        } else if (fabs(x) < 0.012 && fabs(y - width) < 0.012) {
+        if (is_near(x, y, 0.0, width)) {
             held->place = ON_FEEDER_BELT;
             held->way = fmax(x, 0.0);
-        } else if (arm == AT_EXTRACTOR && y > extractor_reach - 0.012) {
+        } else if (is_near(x, y, belt_length, 0.0) || is_near(x, y, 0.0, 0.0)) {
+            held->place = ON_EXTRACTION_BELT;
+            held->way = belt_length - x;
+        } else if (arm == AT_EXTRACTOR && y > extractor_reach - drop_reach) {
             held->place = IN_CHANNEL;
             held->way = width - y;
         } else {
