@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws one round of the production cell as an animated SVG, from the trace of a simulation.
+"""Draws two rounds of the production cell as an animated SVG, from the trace of a simulation.
 
     build/production_cell --duration 60 --trace trace
     python animation.py trace docs/pictures/production-cell.svg
 
-A round is the time between two blocks that leave the mould.  Blocks look alike, so that the picture repeats without a
-jump: after a round, each block is where the one before it was.
+A round is the time between two blocks that leave the mould.  After two rounds, each block is where another one was at
+first.  Blocks look alike, so that the picture repeats without a jump.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from pathlib import Path
 Row = dict[str, float]
 Point = tuple[float, ...]
 
-ROUND = 5  # number of the block with which the round begins: the line is in its rhythm then
+FIRST, ROUNDS = 4, 2  # the number of the block with which the picture begins: the line is in its rhythm then
 SAMPLE = 0.02  # s
 TOLERANCE = 0.4  # pixels between the trace and the picture
 SCALE, LEFT, TOP = 800.0, 0.36, 0.6  # pixels/m; m at the left edge and at the top
@@ -68,12 +68,12 @@ def load(file: Path) -> list[Row]:
 
 
 class Trace:
-    """The rows of the files of a trace, at regular times of one round."""
+    """The rows of the files of a trace, at regular times of the picture."""
 
     def __init__(self, folder: Path) -> None:
         plant = load(folder / "plant.csv")
         ends = [row["time"] for before, row in pairwise(plant) if moulded(row) > moulded(before)]
-        self.begin, end = ends[ROUND - 1], ends[ROUND]
+        self.begin, end = ends[FIRST - 1], ends[FIRST - 1 + ROUNDS]
         self.duration = end - self.begin
         self.times = [
             self.begin + i * self.duration / round(self.duration / SAMPLE)

@@ -82,8 +82,8 @@ def test_all_targets_pass_the_checks_for_their_boards() -> None:
 
 
 def test_the_picture(program: Path, tmp_path: Path) -> None:
-    """The picture in the README is a round of the simulation.  EPG_UPDATE_GOLDEN=1 draws it again."""
-    subprocess.run([program, "--duration", "60", "--trace", tmp_path], check=True, stdout=subprocess.DEVNULL)
+    """The picture in the README is a part of the simulation.  EPG_UPDATE_GOLDEN=1 draws it again."""
+    subprocess.run([program, "--duration", "50", "--trace", tmp_path], check=True, stdout=subprocess.DEVNULL)
     picture = ANIMATION.picture(tmp_path)
     if os.environ.get("EPG_UPDATE_GOLDEN"):
         PICTURE.write_text(picture, encoding="utf-8")
