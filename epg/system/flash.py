@@ -17,6 +17,7 @@ import re
 import shlex
 import shutil
 import subprocess
+import sys
 import time
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -224,9 +225,10 @@ class Flasher:
         self.diagnostics.stop_if_errors()
         for number, job in enumerate(self.jobs):
             self._show(job, job.flashing.write)
-            status = subprocess.run(self._command(job, job.flashing.write), stdin=subprocess.DEVNULL).returncode
-            if status != 0:
-                self._report_failure(job, status, self.jobs[:number], self.jobs[number + 1 :])
+            command = self._command(job, job.flashing.write)
+            done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=sys.stderr)
+            if done.returncode != 0:
+                self._report_failure(job, done.returncode, self.jobs[:number], self.jobs[number + 1 :])
 
     def _prepare(self) -> None:
         running = []

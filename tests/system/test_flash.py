@@ -344,7 +344,7 @@ def test_a_failure_while_writing(bench: Bench, capfd: pytest.CaptureFixture[str]
     output = capfd.readouterr()
     assert "the image of 'follower' was not written: picotool ended with status 1" in output.err
     assert "hint: written: leader. not written: third. correct the error" in output.err
-    assert "not permitted" in output.out and set(bench.written()) == {FIRST}
+    assert "not permitted" in output.err and set(bench.written()) == {FIRST}
 
 
 def test_boards_without_names(bench: Bench, capfd: pytest.CaptureFixture[str]) -> None:
@@ -431,3 +431,6 @@ def test_json(bench: Bench, capfd: pytest.CaptureFixture[str]) -> None:
     data = json.loads(capfd.readouterr().out)
     assert [board["board"] for board in data["boards"]] == [FIRST, SECOND, PROBE]
     assert sum(" load " in command for command in data["commands"]) == 2
+    run(bench, "--target", "follower", "--json")
+    data = json.loads(capfd.readouterr().out)
+    assert [command.split()[1] for command in data["commands"]] == ["info", "load"]
