@@ -29,15 +29,11 @@ from epg.documents.tcf import TcfFile, load_tcf_chain, settings_node
 from epg.documents.text_file import Drafts
 from epg.models import load_model
 from epg.models.model import Model
-from epg.resolve.allocation import Assignment
+from epg.resolve.allocation import Hardware
 from epg.resolve.application import Application
-from epg.resolve.claims import TICK, ClaimKey
+from epg.resolve.claims import TICK
 from epg.resolve.resolve import PlantFiles, allocate_hardware, resolve
 from epg.source import Span, YamlNode
-
-Hardware = Mapping[ClaimKey, Assignment]
-"""The assignment of each claim of a component or of the control loop."""
-
 
 Settings = list[tuple[tuple[str, ...], YamlNode]]
 """Values that replace those of a ``.tcf``: keys, and the value."""
@@ -168,6 +164,17 @@ def load_application(request: Request, diagnostics: Diagnostics) -> Application 
     return load_parts(request, diagnostics).application
 
 
+def _hardware_of_board(request: Request, model: Model, catalog: Catalog) -> Hardware | None:
+    """The assignments on its board of a target that is simulated with its system; None for other targets."""
+    if request.system is None or not request.system.simulated:
+        return None
+    real = replace(request, system=replace(request.system, simulated=False))
+    configuration = load_configuration(real, catalog, Diagnostics())
+    if configuration is None:
+        return None
+    return allocate_hardware(configuration, configuration.control.period or model.step, Diagnostics())
+
+
 def load_parts(
     request: Request, diagnostics: Diagnostics, read_model: ModelReader = load_model, catalog: Catalog | None = None
 ) -> Parts:
@@ -203,7 +210,8 @@ def load_parts(
     check_model_names(model, f"{request.name}_model", diagnostics)
     if plant is not None:
         check_model_names(plant.model, f"{request.name}_plant", diagnostics)
-    application = resolve(request.name, configuration, model, bindings, plant, diagnostics)
+    board = _hardware_of_board(request, model, catalog)
+    application = resolve(request.name, configuration, model, bindings, plant, diagnostics, board)
     if application is not None:
         own = () if request.system is None else (request.system.file,)
         application = replace(application, files=tuple(sorted({*application.files, *own})))

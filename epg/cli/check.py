@@ -14,7 +14,7 @@ from epg.cli.system import SYSTEM_FILES, is_system, read_system, system_data, sy
 from epg.diagnostics import Diagnostics
 
 if TYPE_CHECKING:
-    from epg.project import Hardware
+    from epg.resolve.allocation import Hardware
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

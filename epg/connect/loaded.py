@@ -19,7 +19,8 @@ from epg.edit.bindings import ends_of
 from epg.models import Model, load_model
 from epg.models.folders import searched_folders
 from epg.models.neighbours import Neighbours
-from epg.project import Hardware, Parts, Request, hardware_of, load_parts
+from epg.project import Parts, Request, hardware_of, load_parts
+from epg.resolve.allocation import Hardware
 from epg.resolve.matching import Match, match_ports
 from epg.resolve.resolve import allocate_hardware
 from epg.source import YamlNode

@@ -29,7 +29,7 @@ from epg.resolve.pins import Pins
 from epg.resolve.preferences import start_of, triggering_place, widest_places
 from epg.resolve.search import WHOLE, Demand, Place, find_places
 
-__all__ = ["Assignment", "allocate"]
+__all__ = ["Assignment", "Hardware", "allocate"]
 
 NODES = 255
 """The ``instance`` of the first peripheral that a devicetree node describes.  The others count down from it."""
@@ -91,9 +91,13 @@ class _Placed:
     places: frozenset[Place]
 
 
+Hardware = Mapping[ClaimKey, Assignment]
+"""The assignment of each claim of a component or of the control loop."""
+
+
 def allocate(
     claims: Sequence[Claim], target: Target, diagnostics: Diagnostics, others: OtherCode = NO_OTHER_CODE
-) -> Mapping[ClaimKey, Assignment] | None:
+) -> Hardware | None:
     """An assignment for each claim, or None after reporting mistakes and conflicts.
 
     The same claims get the same hardware in every run.  They get no pin or instance that is in ``others``.

@@ -14,7 +14,7 @@ from epg.diagnostics import Diagnostics, Note
 from epg.documents.schema import extended_from
 from epg.models.model import Model
 from epg.quantity import parse_quantity, show
-from epg.resolve.allocation import Assignment, allocate
+from epg.resolve.allocation import Assignment, Hardware, allocate
 from epg.resolve.application import Application, Plant, ResolvedComponent, Wire
 from epg.resolve.claims import TICK, component_claims, tick_claims
 from epg.resolve.counters import check_counters, longest_gap
@@ -43,12 +43,18 @@ def resolve(
     bindings: Bindings,
     plant: PlantFiles | None,
     diagnostics: Diagnostics,
+    board: Hardware | None = None,
 ) -> Application | None:
-    """The application ``name``, or None after reporting all reasons why its parts do not fit together."""
+    """The application ``name``, or None after reporting all reasons why its parts do not fit together.
+
+    ``board`` are the assignments on a board, if a simulation of it must have its frequencies and steps of PWM.
+    """
     errors = diagnostics.error_count
     _same_model(bindings, model, diagnostics)
     period, divider = _period(configuration, model, diagnostics)
     assignments = allocate_hardware(configuration, period, diagnostics)
+    if assignments is not None and board is not None:
+        assignments = _with_steps(assignments, board)
     indices = value_indices_of(configuration.components, bindings)
     components = _components(configuration, assignments or {}, indices)
     wiring = Wiring(bindings, model, components, diagnostics)
@@ -101,6 +107,16 @@ def resolve(
         absent=configuration.absent,
         others=configuration.others,
     )
+
+
+def _with_steps(assignments: Hardware, board: Hardware) -> Hardware:
+    """``assignments`` with the dividers of ``board``: the same frequencies and the same number of steps of a PWM."""
+    result = dict(assignments)
+    for key, found in board.items():
+        if key in result and found.settings and result[key].settings:
+            divided = {name: getattr(found, name) for name in ("settings", "clock", "frequency", "asked")}
+            result[key] = replace(result[key], **divided)
+    return result
 
 
 def _bound_ports(components: Mapping[str, Component], outputs: Sequence[Wire], diagnostics: Diagnostics) -> None:
@@ -171,7 +187,7 @@ def _period(configuration: Configuration, model: Model, diagnostics: Diagnostics
 
 def allocate_hardware(
     configuration: Configuration, period: Fraction | None, diagnostics: Diagnostics
-) -> Mapping[tuple[str, str], Assignment] | None:
+) -> Hardware | None:
     """The assignments for all components and for the timer of the control loop, or None after reporting mistakes.
 
     ``period`` is in seconds, or None if it is not known yet.
@@ -198,7 +214,7 @@ def allocate_hardware(
 
 def _components(
     configuration: Configuration,
-    assignments: Mapping[tuple[str, str], Assignment],
+    assignments: Hardware,
     indices: Mapping[str, Mapping[str, int]],
 ) -> dict[str, ResolvedComponent]:
     claims: dict[str, dict[str, Assignment]] = {}

@@ -15,7 +15,9 @@ from epg.cli.main import main
 from epg.diagnostics import Diagnostics
 from epg.emit.cmake import PathNames
 from epg.emit.outputs import application_outputs
+from epg.project import load_application
 from epg.resolve.application import Step
+from epg.source import Span
 from epg.system.check_system import CheckedSystem, check_system
 from epg.system.load_system import load_system
 from epg.system.loops import loops_of
@@ -214,6 +216,21 @@ def test_the_plant_of_a_system_in_its_picture(capsys: pytest.CaptureFixture[str]
     wires = [line.title for line in svg.lines if line.title.endswith("moves Production_Cell")]
     assert len(wires) == 6 and wires[0] == "feeder_belt senses and moves Production_Cell"
     assert "6 wires" in svg.words
+
+
+def test_a_simulated_target_has_the_pwm_steps_of_its_board() -> None:
+    """Timers of the boards have other clocks: 125, 150 and 200 MHz."""
+    path = ROOT / "examples/production_cell/production_cell.system.yaml"
+    system = load_system(path, Diagnostics(), Span(""))
+    assert system is not None
+    tops = {}
+    for name in ("feeder", "robot", "door"):
+        request = system.simulated(system.targets[name], f"cell_{name}")
+        application = load_application(request, Diagnostics())
+        assert application is not None and application.target.platform.name == "simulated"
+        (motor,) = (component for component in application.components if component.name == "motor")
+        tops[name] = motor.claims["pwm"].settings["top"]
+    assert tops == {"feeder": 6249, "robot": 7499, "door": 9999}
 
 
 def test_agents_of_a_system(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
