@@ -20,7 +20,7 @@ system: split
 plant: {model: plant, bindings: split.plant.yaml}
 targets:
   pan: {tcf: rpi_pico_freertos_jiwy, model: model, bindings: jiwy.bindings.yaml}
-  tilt: {tcf: nucleo_h743zi_freertos_jiwy, model: model, bindings: jiwy.bindings.yaml}
+  tilt: {tcf: rpi_pico_bare_metal_jiwy, model: model, bindings: jiwy.bindings.yaml}
   own:
     tcf: rpi_pico_freertos_jiwy
     model: model
