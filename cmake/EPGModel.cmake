@@ -14,6 +14,7 @@
 function(epg_add_model name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "MODEL;INSTANCES" "")
   _epg_require(epg_add_model "MODEL <folder or file> [INSTANCES <n>]" "${name}" "${arg_UNPARSED_ARGUMENTS}" "${arg_KEYWORDS_MISSING_VALUES}" MODEL)
+  _epg_require_new(epg_add_model "${name}")
   _epg_require_language(C "EPG")
   if(NOT arg_INSTANCES)
     set(arg_INSTANCES 1)

@@ -157,7 +157,7 @@ endfunction()
 # Checks the arguments of a public function, and stops with an error if they are wrong.
 #   <function>  name of the public function, for the message
 #   <usage>     its arguments after the name, for the message
-#   <name>      its first argument: the library or target to make, which must not exist yet
+#   <name>      its first argument
 #   <unparsed>  unknown arguments: <prefix>_UNPARSED_ARGUMENTS of cmake_parse_arguments()
 #   <missing>   keywords without a value: <prefix>_KEYWORDS_MISSING_VALUES
 #   <keyword>   keywords that are required; their values are in the caller's variables arg_<keyword>
@@ -179,10 +179,16 @@ function(_epg_require function usage name unparsed missing)
       message(FATAL_ERROR "${function}(${name}): ${keyword} is missing.${takes}")
     endif()
   endforeach()
+  _epg_check_folder_names()
+endfunction()
+
+# _epg_require_new(<function> <name>)
+#
+# Stops with an error if the library or target <name>, which a public function makes, exists already.
+function(_epg_require_new function name)
   if(TARGET "${name}")
     message(FATAL_ERROR "${function}(${name}): a target with this name exists already; choose another name")
   endif()
-  _epg_check_folder_names()
 endfunction()
 
 # _epg_check_folder_names()

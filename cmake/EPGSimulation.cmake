@@ -16,6 +16,7 @@ function(epg_add_simulation name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "REALTIME" "EXECUTABLE;SCENARIO;OUTPUT" "")
   _epg_require(epg_add_simulation "EXECUTABLE <executable> SCENARIO <file> [OUTPUT <folder>] [REALTIME]" "${name}"
     "${arg_UNPARSED_ARGUMENTS}" "${arg_KEYWORDS_MISSING_VALUES}" EXECUTABLE SCENARIO)
+  _epg_require_new(epg_add_simulation "${name}")
   if(NOT TARGET "${arg_EXECUTABLE}")
     message(FATAL_ERROR "epg_add_simulation(${name}): there is no executable '${arg_EXECUTABLE}'; call epg_add_executable() first")
   endif()

@@ -12,6 +12,9 @@
 # With TARGETS, it is for a firmware project.  It makes the library EPG::<target> of each of these targets, as
 # epg_add_target(<target> SYSTEM <file>) does, and nothing else.  <name> is then the name of the call in messages.
 #
+# In sysbuild.cmake of a Zephyr application, it adds an image for each target on Zephyr, with the name of the target, and
+# nothing else.  A relative path of SYSTEM then begins at the folder of sysbuild.cmake.
+#
 # Each target becomes a shared object beside the executable.  Needs Linux.  It stops with an error if an argument is
 # wrong.  A mistake in the files is reported, and the configure run fails at its end.
 function(epg_add_system name)
@@ -27,6 +30,12 @@ function(epg_add_system name)
     endif()
     return()
   endif()
+  if(DEFINED SYSBUILD_CURRENT_SOURCE_DIR AND COMMAND ExternalZephyrProject_Add)
+    get_filename_component(file "${arg_SYSTEM}" ABSOLUTE BASE_DIR "${CMAKE_CURRENT_LIST_DIR}")
+    _epg_system_sysbuild("${name}" "${file}")
+    return()
+  endif()
+  _epg_require_new(epg_add_system "${name}")
   if(NOT CMAKE_SYSTEM_NAME STREQUAL "Linux")
     message(FATAL_ERROR "epg_add_system(${name}): systems are simulated on Linux only, and this project is for ${CMAKE_SYSTEM_NAME}.
 In a firmware project, name its targets: epg_add_system(${name} SYSTEM ${arg_SYSTEM} TARGETS <target>...)")
@@ -61,6 +70,35 @@ In a firmware project, name its targets: epg_add_system(${name} SYSTEM ${arg_SYS
   if(TARGET epg_simulator)
     target_link_libraries(${name} PRIVATE epg_simulator)
   endif()
+endfunction()
+
+# _epg_system_sysbuild(<name> <system>)
+#
+# Adds the images of all targets on Zephyr to a build of sysbuild.  targets/platforms/zephyr/image reads the variables
+# <target>_EPG_... from sysbuild's cache.
+function(_epg_system_sysbuild name system)
+  set(output "${CMAKE_BINARY_DIR}/epg/${name}")
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${system}")
+  _epg_generate(good "${name}" "${output}" generate-system "${name}" --system "${system}"
+    --source-dir "${SYSBUILD_CURRENT_SOURCE_DIR}" --caller "${CMAKE_CURRENT_LIST_FILE}")
+  if(NOT good)
+    message(FATAL_ERROR "EPG: system '${name}' was not generated; the messages above say why")
+  endif()
+  get_filename_component(EPG_TARGETS_DIR "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../targets" ABSOLUTE)
+  include("${output}/${name}_images.cmake")
+  foreach(image IN LISTS EPG_IMAGES)
+    string(REPLACE "|" ";" parts "${image}")
+    list(GET parts 0 target)
+    list(GET parts 1 project)
+    list(GET parts 2 board)
+    if(project STREQUAL "${EPG_TARGETS_DIR}/platforms/zephyr/image")
+      set(${target}_EPG_DIR "${CMAKE_CURRENT_FUNCTION_LIST_DIR}" CACHE INTERNAL "folder of EPG's CMake package")
+      set(${target}_EPG_IMAGE "${target}" CACHE INTERNAL "target of the image")
+      set(${target}_EPG_IMAGE_SYSTEM "${system}" CACHE INTERNAL "system of the target")
+      set(${target}_EPG_IMAGE_BOARD "${board}" CACHE INTERNAL "Zephyr's name of the board")
+      ExternalZephyrProject_Add(APPLICATION ${target} SOURCE_DIR "${project}" BOARD "${board}")
+    endif()
+  endforeach()
 endfunction()
 
 # _epg_system_part(<name> <target> <plant> <argument>...)

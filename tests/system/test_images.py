@@ -15,7 +15,7 @@ import pytest
 from epg.cli.main import main
 from tests.cmake.project import ROOT, Project
 from tests.emulator.toolchain import arm_gcc, pico_sdk, skip_if_missing, tool
-from tests.zephyr.workspace import c_library, workspace
+from tests.zephyr.workspace import c_library, run, workspace
 
 SYSTEM = """version: 1
 system: two
@@ -103,6 +103,30 @@ def test_an_image_of_zephyr(project: Project, capfd: pytest.CaptureFixture[str])
     images = project.build_folder / "two_images"
     assert main(["flash", str(project.source / "two.system.yaml"), "--images", str(images), "--dry-run"]) == 0
     assert f"load -v -x {images}/leader/zephyr/zephyr.elf --ser E6614103E7452D2F" in capfd.readouterr().out
+
+
+def test_images_of_sysbuild(project: Project) -> None:
+    """epg_add_system() in sysbuild.cmake of an application adds the targets on Zephyr."""
+    skip_if_missing(lambda: workspace("rpi_pico"), c_library)
+    here = workspace("rpi_pico")
+    project.edit("two.system.yaml", "rpi_pico_bare_metal_jiwy", "rpi_pico_zephyr_jiwy")
+    app = project.source
+    (app / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.22)\nfind_package(Zephyr REQUIRED HINTS $ENV{ZEPHYR_BASE})\n"
+        "project(empty)\ntarget_sources(app PRIVATE main.c)\n"
+    )
+    (app / "main.c").write_text("int main(void) { return 0; }\n")
+    (app / "prj.conf").touch()
+    (app / "sysbuild.cmake").write_text(
+        f'include("{ROOT.as_posix()}/cmake/EPGConfig.cmake")\nepg_add_system(two SYSTEM two.system.yaml)\n'
+    )
+    build = app / "build"
+    modules = ";".join(str(module) for module in here.modules)
+    settings = {"APP_DIR": app, "BOARD": "rpi_pico", "ZEPHYR_MODULES": modules, **c_library()}
+    configure = ["cmake", "-G", "Ninja", "-S", str(here.base / "share/sysbuild"), "-B", str(build)]
+    run([*configure, *(f"-D{name}={value}" for name, value in settings.items())], here)
+    run(["ninja", "-C", str(build)], here)
+    assert (build / "leader/zephyr/zephyr.uf2").is_file() and not (build / "follower").exists()
 
 
 def compiled(output: str) -> set[str]:
