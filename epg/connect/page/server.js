@@ -56,8 +56,17 @@ function take(next, always = false) {
   if (newer || always) changed();
 }
 
-// Sends an action. Returns null, or the error if it was refused: {message, hint}.
-export async function act(action, body = {}) {
+let before = Promise.resolve(); // the last action
+
+// Does an action after all earlier ones, so that a change that was made just before "save" is saved. Returns null, or the
+// error if it was refused: {message, hint}.
+export function act(action, body = {}) {
+  const done = before.then(() => send(action, body));
+  before = done.catch(() => {}); // the caller reports the error
+  return done;
+}
+
+async function send(action, body) {
   let answer, data;
   try {
     answer = await request(`api/${action}`, {
