@@ -187,6 +187,13 @@ def test_enter_takes_proposals_and_the_rest_of_the_file_stays(project: Path, bin
     assert sorted(bindings.read_text().splitlines()) == sorted(whole.splitlines())
 
 
+def test_parts_that_no_port_uses_are_left_out(one_axis: Path) -> None:
+    status, said = talk(session_of(one_axis), "", "y", "y", "n")
+    assert status == 0
+    assert "no port uses encoder_tilt, pwm_tilt, guard_tilt, " in said and "guard_pan.homing: leave them out?" in said
+    assert "  guard_pan: {homing: null}\n" in (one_axis / "robot.tcf").read_text()
+
+
 def test_numbers_names_and_as_much_of_a_name_as_no_other_has(project: Path, bindings: Path) -> None:
     open_ports(bindings, "setpoint_pan", "setpoint_tilt", "pwm_pan")
     status, said = talk(session_of(project), "4", "nothing", "enc", "pan", "pwm", "pwm_p", "", "y", "n")

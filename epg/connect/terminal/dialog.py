@@ -60,7 +60,6 @@ class _Dialog:
             return 1
         ports = ports_of(self._talk.state)
         self._ports.ask([port for port in ports if is_open(self._talk.state, port)], ports)
-        self._leave_out()
         shown = None
         while True:
             if shown != self._talk.state["wires"]:
@@ -102,14 +101,17 @@ class _Dialog:
         self._console.say(f"{len(ports)} ports, {left} of them to connect. h lists the possible answers.")
 
     def _leave_out(self) -> None:
-        """Offers to remove the parts of the robot that no port uses."""
+        """Offers to remove the parts of the robot that no port uses, if this corrects all errors."""
         unused = self._talk.state["unused"]
-        if unused and self._console.agree(f"no port uses {', '.join(unused)}: leave them out?"):
+        errors = {each["id"] for each in self._talk.state["diagnostics"] if each["severity"] == "error"}
+        question = f"no port uses {', '.join(unused)}: leave them out?"
+        if unused and errors == {"needs-bound"} and self._console.agree(question):
             self._talk.act("leave_out", {})
 
     def _finish(self) -> int:
         """Saves and builds, if the user agrees.  Returns the exit status."""
         self._talk.look()
+        self._leave_out()
         if self._talk.state["draft"]["changed"]:
             if not self._console.agree("save?"):
                 self._console.say("nothing was saved")
