@@ -141,7 +141,8 @@ def test_a_plant_that_diverges_ends_the_run(tmp_path: Path, value: str, shown: s
         assert run.status == 1
         # the thousandth step, at 7 plant steps per control period of 1 ms
         assert f"error: the plant has diverged: plant.outputs.angle is {shown} at 0.143 s\nhint: " in run.stderr
-        assert len(run.trace["time"]) == 143
+        assert run.trace["time"][-1] < 0.143
+        assert more or len(run.trace["time"]) == 143, "in real time, this computer may miss a tick"
         assert set(run.trace["inputs.position"]) > {0.0}
 
 
