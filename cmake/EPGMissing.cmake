@@ -68,8 +68,8 @@ endfunction()
 
 # _epg_sdks_to_find(<result> <tool>...)
 #
-# Sets <result> to the tools without those that CMake has found itself, which are programs and SDKs whose "target" exists
-# already, and without those of which the project has a copy.
+# Sets <result> to the tools that EPG must find.  CMake finds programs itself.  An SDK whose "target" exists is found
+# already.  The project can have a copy of a tool.
 function(_epg_sdks_to_find result)
   set(sdks "")
   foreach(tool IN LISTS ARGN)
