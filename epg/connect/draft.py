@@ -14,7 +14,7 @@ from pathlib import Path
 
 from epg.connect.files import Snapshot
 from epg.edit.bindings import CannotEdit, End, set_ends
-from epg.edit.tcf import leave_out, set_extends
+from epg.edit.tcf import Value, remove_value, set_value
 from epg.models.model import Model
 
 
@@ -30,20 +30,21 @@ class SetEnds:
 
 
 @dataclass(frozen=True)
-class SetExtends:
-    """Makes the ``.tcf`` extend the file ``name``."""
+class SetValue:
+    """Gives the key at ``path`` of the ``.tcf`` a value.  None removes what an extended file has at this key."""
 
-    name: str
+    path: tuple[str, ...]
+    value: Value
 
 
 @dataclass(frozen=True)
-class LeaveOut:
-    """Removes parts of the file that the ``.tcf`` extends: lists of keys below ``components``."""
+class RemoveValue:
+    """Removes the key at ``path`` from the ``.tcf``: the value of the extended file, or the default, holds again."""
 
-    parts: tuple[tuple[str, ...], ...]
+    path: tuple[str, ...]
 
 
-Change = SetEnds | SetExtends | LeaveOut
+Change = SetEnds | SetValue | RemoveValue
 Operation = tuple[Change, ...]
 """All changes of one user action; undo and redo treat them as one."""
 
@@ -158,10 +159,10 @@ class Draft:
                 file, before = self.tcf.path.name, texts.tcf
                 if before is None:
                     raise CannotEdit(f"'{file}' cannot be read")
-                if isinstance(change, SetExtends):
-                    texts = replace(texts, tcf=set_extends(before, file, change.name))
+                if isinstance(change, SetValue):
+                    texts = replace(texts, tcf=set_value(before, file, change.path, change.value))
                 else:
-                    texts = replace(texts, tcf=leave_out(before, file, change.parts))
+                    texts = replace(texts, tcf=remove_value(before, file, change.path))
             elif texts.bindings is None or model is None:
                 what = "the bindings" if texts.bindings is None else "the model"
                 raise CannotEdit(f"{what} must be correct before ports can be connected: see the messages")

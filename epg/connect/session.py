@@ -17,10 +17,10 @@ from pathlib import Path
 from typing import Any
 
 import epg
-from epg.connect.body import Body, Refused, bodies, boolean, ends, names, text
+from epg.connect.body import Body, Refused, bodies, boolean, ends, keys, names, text, value
 from epg.connect.configurations import Configurations
 from epg.connect.creation import create
-from epg.connect.draft import LeaveOut, SetEnds, SetExtends
+from epg.connect.draft import RemoveValue, SetEnds, SetValue
 from epg.connect.editor import Editor
 from epg.connect.excerpt import excerpt
 from epg.connect.files import Unsavable
@@ -71,6 +71,8 @@ class Session:
             "disconnect": self._disconnect,
             "accept": self._accept,
             "leave_out": self._leave_out,
+            "set": self._set,
+            "unset": self._unset,
             "undo": lambda body: self._opened().undo(),
             "redo": lambda body: self._opened().redo(),
             "save": self._save,
@@ -199,7 +201,28 @@ class Session:
         parts = self._opened().unused_parts()
         if not parts:
             raise Refused("no part of the robot is unused", "connect all ports first", 409)
-        self._opened().edit((LeaveOut(tuple(tuple(part) for part in parts)),))
+        self._opened().edit(tuple(SetValue(("components", *part), None) for part in parts))
+
+    def _set(self, body: Body) -> None:
+        """Gives keys of the ``.tcf`` their values, in one step."""
+        editor = self._of_the_user()
+        editor.edit(
+            tuple(SetValue(keys(change.get("path")), value(change, "value")) for change in bodies(body, "changes"))
+        )
+
+    def _unset(self, body: Body) -> None:
+        """Removes keys from the ``.tcf``, in one step: the values of the extended file, or the defaults, hold again."""
+        paths = body.get("paths")
+        if not isinstance(paths, list):
+            raise Refused("'paths' must be a list of lists of keys")
+        self._of_the_user().edit(tuple(RemoveValue(keys(path)) for path in paths))
+
+    def _of_the_user(self) -> Editor:
+        """The editor.  Raises Refused if the open target uses a ``.tcf`` of EPG itself."""
+        editor = self._opened()
+        if not editor.owns_tcf:
+            raise Refused("this file cannot be changed", editor.project().fixed, 409)
+        return editor
 
     def _save(self, body: Body) -> None:
         self._opened().save(anyway=boolean(body, "anyway"))
@@ -218,7 +241,7 @@ class Session:
         if reason:
             raise Refused(f"'{name}' cannot be chosen here", reason, 409)
         if name != self._opened().project().chosen:
-            self._opened().edit((SetExtends(f"{name}.tcf"),))
+            self._opened().edit((SetValue(("extends",), f"{name}.tcf"),))
 
     def _open(self, body: Body) -> None:
         name = text(body, "target")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scalars as YAML text that YAML 1.1 and YAML 1.2 read as the same value, in blocks and between ``{}`` and ``[]``.
 
->>> scalar_text("encoder_pan.reset"), scalar_text("on"), scalar_text("1/4"), scalar_text("010")
-('encoder_pan.reset', "'on'", '1/4', "'010'")
+>>> scalar_text("encoder_pan.reset"), scalar_text("on"), scalar_text("1/4"), scalar_text("010"), scalar_text("1 kHz")
+('encoder_pan.reset', "'on'", '1/4', "'010'", '1 kHz')
 """
 
 from __future__ import annotations
@@ -10,7 +10,9 @@ from __future__ import annotations
 import json
 import re
 
-_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.]*(/[A-Za-z0-9_.]+)?")
+_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*")
+_PATH = re.compile(r"(~|\.{1,2}|[A-Za-z0-9_-]*)(/[A-Za-z0-9_.-]+)+")
+_QUANTITY = re.compile(r"[-+]?[0-9][0-9.]*(e[-+]?[0-9]+)? [A-Za-z]+(/[A-Za-z]+)?")
 _RATIO = re.compile(r"[-+]?[0-9][0-9.]*/[-+]?[0-9.]+")
 # YAML 1.1 reads more words as booleans than YAML 1.2.
 _NO_TEXT = frozenset(("true", "false", "null", "yes", "no", "on", "off", "y", "n"))
@@ -29,7 +31,7 @@ def scalar_text(value: object, style: str = "") -> str:
     text = str(value)
     if any(character != " " and not character.isprintable() for character in text) or style == '"':
         return _double_quoted(text)
-    plain = (_WORD.fullmatch(text) and text.casefold() not in _NO_TEXT) or _RATIO.fullmatch(text)
+    plain = any(form.fullmatch(text) for form in (_WORD, _PATH, _QUANTITY, _RATIO)) and text.casefold() not in _NO_TEXT
     return text if plain and style != "'" else "'" + text.replace("'", "''") + "'"
 
 

@@ -1,19 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Changes a ``.tcf``: the name of the file that it extends, and parts of that file which it leaves out.
-
-All other text of the file stays as it was written.
+"""Changes values of a ``.tcf``.  All other text of the file, with its comments, stays as it was written.
 
 >>> text = "# my robot\\nversion: 1\\nextends: host_jiwy.tcf   # for now\\nnode: me\\n"
->>> print(set_extends(text, "robot.tcf", "rpi_pico_bare_metal_jiwy.tcf"), end="")
+>>> text = set_value(text, "robot.tcf", ["extends"], "rpi_pico_bare_metal_jiwy.tcf")
+>>> print(set_value(text, "robot.tcf", ["components", "pwm_pan", "pins", "value"], "GP4"), end="")
 # my robot
 version: 1
 extends: rpi_pico_bare_metal_jiwy.tcf   # for now
 node: me
+components:
+  pwm_pan: {pins: {value: GP4}}
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import copy
+import json
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import yaml
@@ -23,107 +26,162 @@ from epg.documents.yaml_file import parse_yaml
 from epg.edit import yaml_edit
 from epg.edit.scalars import scalar_text
 from epg.edit.yaml_edit import CannotEdit, parse_map
-from epg.source import YamlNode
 
-KEY = "extends"
+Value = object
+"""A value as JSON has it: a map with texts as keys, a list, a text, a number, a boolean or None."""
+
 COMPONENTS = "components"
+_Change = Callable[[str, tuple[str, ...], Value], str]
+_ORDER = ("version", "extends", "target", "node", "namespace", "clocks", "control", "communication", COMPONENTS)
+"""The usual order of the keys of a ``.tcf``."""
+_WIDEST = 100
+"""The largest number of characters of a line with a new map; a longer map gets a line for each key."""
 
 
-def set_extends(text: str, file: str, value: str) -> str:
-    """``text`` with ``extends: value``: in place of the old name, or behind ``version`` if there was none.
+def set_value(text: str, file: str, path: Sequence[str], value: Value) -> str:
+    """``text`` with ``value`` at ``path``.  Missing maps on the way are made.
 
-    ``file`` is the name of the text in messages.  Raises :class:`~epg.edit.yaml_edit.CannotEdit` if the text is not a
-    map, or if its ``extends`` is a map or a list.
+    A map is changed key by key, so the comments between its keys stay.  None removes a component or a parameter that
+    an extended file has.  ``file`` is the name of the text in messages.  Raises
+    :class:`~epg.edit.yaml_edit.CannotEdit` if EPG cannot edit the form of the text; then an editor can.
     """
     body = text.removeprefix("\ufeff")
-    root = parse_map(body, file)
-    old = root.get(KEY)
-    if old is not None and (old.is_mapping or old.is_sequence):
-        line = root.key_span(KEY).line
-        raise CannotEdit(f"{file}:{line}: '{KEY}' must be one name: correct this in an editor first")
-    if old is not None and old.value == value:
-        return text
-    try:
-        changed = _edited(body, value, old is not None)
-    except CannotEdit as problem:
-        raise CannotEdit(f"{file}: '{KEY}' cannot be changed here: {problem}") from None
-    _verify(root, changed, file, value)
-    return text[: len(text) - len(body)] + changed
-
-
-def leave_out(text: str, file: str, parts: Sequence[Sequence[str]]) -> str:
-    """``text`` in which each of ``parts`` is null: a component, or a parameter of one.
-
-    A part is a list of keys below ``components``, such as ``["guard_tilt", "homing"]``.  Null removes it although the
-    extended file has it.  Raises :class:`~epg.edit.yaml_edit.CannotEdit` if EPG cannot edit the form of the text.
-    """
-    body = text.removeprefix("\ufeff")
-    wanted = parse_map(body, file).plain()
-    changed = body
-    for part in parts:
-        keys = (COMPONENTS, *part)
-        try:
-            changed = _with_null(changed, keys)
-        except CannotEdit as problem:
-            raise CannotEdit(f"{file}: '{'.'.join(keys)}' cannot be left out here: {problem}") from None
-        _set_null(wanted, keys)
-    after = parse_yaml(changed, file, Diagnostics())
-    if after is None or after.plain() != wanted:
-        raise CannotEdit(f"{file}: EPG cannot edit this form: write 'null' for these components in an editor")
-    return text[: len(text) - len(body)] + changed
-
-
-def _with_null(text: str, path: tuple[str, ...]) -> str:
-    if yaml_edit.find(text, path) is not None:
-        return yaml_edit.replace(text, path, "null")
-    depth = next(n for n in range(len(path) - 1, -1, -1) if _is_map(text, path[:n]))
-    parent, key, below = path[:depth], path[depth], path[depth + 1 :]
-    node = yaml_edit.node_at(text, parent)
-    value = "null"
-    for name in reversed(below):
-        value = f"{{{name}: {value}}}"
-    if depth == 0 and below and not yaml_edit.is_flow(node):  # the first component has its own line
-        value = f"\n  {value[1:-1]}"
-    return yaml_edit.insert(text, parent, len(node.value), f"{key}: {value}".replace(": \n", ":\n"))
-
-
-def _is_map(text: str, path: tuple[str, ...]) -> bool:
-    node = yaml_edit.find(text, path) if path else yaml_edit.node_at(text, ())
-    return isinstance(node, yaml.MappingNode)
-
-
-def _set_null(tree: dict[str, Any], path: tuple[str, ...]) -> None:
+    wanted = copy.deepcopy(parse_map(body, file).plain())
+    tree = wanted
     for key in path[:-1]:
         if not isinstance(tree.get(key), dict):
             tree[key] = {}
         tree = tree[key]
-    tree[path[-1]] = None
+    tree[path[-1]] = value
+    return _changed(text, body, _set, file, tuple(path), value, wanted)
 
 
-def _edited(text: str, value: str, is_there: bool) -> str:
-    if is_there:
-        node = yaml_edit.node_at(text, (KEY,))
-        style = node.style or "" if isinstance(node, yaml.ScalarNode) else ""
-        return yaml_edit.replace(text, (KEY,), _name(value, style))
-    root = yaml_edit.node_at(text, ())
-    keys = [key.value for key, _ in root.value]
-    return yaml_edit.insert(text, (), keys.index("version") + 1 if "version" in keys else 0, f"{KEY}: {_name(value)}")
+def remove_value(text: str, file: str, path: Sequence[str]) -> str:
+    """``text`` without the key at ``path``, and without the maps that would be empty then.
+
+    A key that does not exist is no mistake.  Raises :class:`~epg.edit.yaml_edit.CannotEdit` as :func:`set_value` does.
+    """
+    body = text.removeprefix("\ufeff")
+    wanted = copy.deepcopy(parse_map(body, file).plain())
+    if yaml_edit.find(body, tuple(path)) is None:
+        return text
+    last = len(path)
+    while last > 1 and len(_at(wanted, path[: last - 1])) == 1:
+        last -= 1
+    if path[:last] == [COMPONENTS] and "extends" not in wanted:  # this key is required
+        return set_value(text, file, path[:last], {})
+    del _at(wanted, path[: last - 1])[path[last - 1]]
+    return _changed(text, body, _remove, file, tuple(path[:last]), None, wanted)
 
 
-def _name(value: str, style: str = "") -> str:
-    """A file name as YAML text.  It needs quotes only if a part of it does: ``../robots/a-b.tcf`` needs none."""
-    parts = value.replace("-", "_").split("/")
-    plain = not style and all(part in (".", "..") or scalar_text(part) == part for part in parts)
-    return value if plain and not value.startswith("-") else scalar_text(value, style)
+def _at(tree: dict[str, Any], path: Sequence[str]) -> dict[str, Any]:
+    for key in path:
+        tree = tree[key]
+    return tree
 
 
-def _verify(root: YamlNode, changed: str, file: str, value: str) -> None:
+def _changed(
+    text: str, body: str, change: _Change, file: str, path: tuple[str, ...], value: Value, wanted: Value
+) -> str:
+    """Does ``change``, and verifies that the values of the changed text are the ``wanted`` ones."""
+    key = ".".join(path)
+    try:
+        changed = change(body, path, value)
+    except CannotEdit as problem:
+        raise CannotEdit(f"{file}: '{key}' cannot be changed here: {problem}") from None
     after = parse_yaml(changed, file, Diagnostics())
-    others = [(key, node.plain()) for key, node in root.items() if key != KEY]
-    if (
-        after is None
-        or repr([(key, node.plain()) for key, node in after.items() if key != KEY]) != repr(others)
-        or after[KEY].value != value
-    ):
-        line = root.key_span(KEY).line if KEY in root else 1
-        raise CannotEdit(f"{file}:{line}: EPG cannot edit this form: change '{KEY}' in an editor")
+    if after is None or _sorted(after.plain()) != _sorted(wanted):
+        root = parse_map(body, file)
+        line = root.key_span(path[0]).line if path[0] in root else 1
+        raise CannotEdit(f"{file}:{line}: EPG cannot edit this form: change '{key}' in an editor")
+    return text[: len(text) - len(body)] + changed
+
+
+def _sorted(value: Value) -> str:
+    """``value`` as a text that tells 1, 1.0 and true apart, but not the order of keys."""
+    return str(json.dumps(value, sort_keys=True, default=repr))
+
+
+def _set(text: str, path: tuple[str, ...], value: Value) -> str:
+    node = yaml_edit.find(text, path) if path else yaml_edit.node_at(text, ())
+    if node is None:
+        return _insert(text, path, value)
+    if isinstance(node, yaml.MappingNode) and isinstance(value, Mapping) and node.value and value:
+        for key in [key.value for key, _ in node.value]:
+            if key not in value:
+                text = _remove(text, (*path, key))
+        for key, child in value.items():
+            text = _set(text, (*path, key), child)
+        return text
+    if isinstance(node, yaml.ScalarNode) and not isinstance(value, (Mapping, list)):
+        said = parse_yaml(yaml_edit.source_of(text, node), "", Diagnostics())
+        if said is not None and _sorted(said.plain()) == _sorted(value):
+            return text
+        style = str(node.style) if node.style in ("'", '"') else ""
+        return yaml_edit.replace(text, path, scalar_text(value, style if isinstance(value, str) else ""))
+    return _write(text, path, value)
+
+
+def _insert(text: str, path: tuple[str, ...], value: Value) -> str:
+    """``text`` with a new key.  The missing maps on its path are written with it."""
+    depth = next(n for n in range(len(path) - 1, -1, -1) if yaml_edit.find(text, path[:n]) is not None or n == 0)
+    for key in reversed(path[depth + 1 :]):
+        value = {key: value}
+    parent, key = path[:depth], path[depth]
+    node = yaml_edit.find(text, parent) if parent else yaml_edit.node_at(text, ())
+    if not isinstance(node, yaml.MappingNode) or not node.value:  # null, or an empty map
+        return _write(text, parent, {key: value})
+    keys = [each.value for each, _ in node.value]
+    text = yaml_edit.insert(text, parent, _index(keys, key) if not parent else len(keys), f"{_key(key)}: null")
+    return _write(text, (*parent, key), value)
+
+
+def _index(keys: Sequence[str], key: str) -> int:
+    """The place of a new ``key`` among the ``keys`` of the file: behind the last key that usually stands before it."""
+    before = _ORDER[: _ORDER.index(key)] if key in _ORDER else keys
+    return max((index + 1 for index, each in enumerate(keys) if each in before), default=0)
+
+
+def _write(text: str, path: tuple[str, ...], value: Value) -> str:
+    """``text`` with ``value`` in place of the one at ``path``: on one line, or with a line for each key of a map.
+
+    A section of a file in block style has a line for each key.
+    """
+    line = _flow(value)
+    is_block = not any(yaml_edit.is_flow(yaml_edit.node_at(text, path[:n])) for n in range(len(path)))
+    if not is_block or not isinstance(value, Mapping) or not value:
+        return yaml_edit.replace(text, path, line)
+    width = 2 * len(path) + len(path[-1]) + len(line)
+    if path != (COMPONENTS,) and width <= _WIDEST:
+        return yaml_edit.replace(text, path, line)
+    return yaml_edit.replace_by_lines(text, path, [f"  {each}" for each in _block(value, len(path))])
+
+
+def _block(value: Mapping[str, Value], depth: int) -> list[str]:
+    lines = []
+    for key, child in value.items():
+        line = f"{_key(key)}: {_flow(child)}"
+        if isinstance(child, Mapping) and child and 2 * depth + len(line) > _WIDEST:
+            lines += [f"{_key(key)}:", *(f"  {each}" for each in _block(child, depth + 1))]
+        else:
+            lines.append(line)
+    return lines
+
+
+def _flow(value: Value) -> str:
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{_key(key)}: {_flow(child)}" for key, child in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(_flow(child) for child in value) + "]"
+    return scalar_text(value)
+
+
+def _key(key: str) -> str:
+    return scalar_text(key)
+
+
+def _remove(text: str, path: tuple[str, ...], value: Value = None) -> str:
+    parent = yaml_edit.node_at(text, path[:-1])
+    if len(parent.value) == 1:
+        return yaml_edit.replace(text, path[:-1], "{}")
+    return yaml_edit.remove(text, path)

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from epg.connect.body import Refused
-from epg.connect.draft import SetEnds, SetExtends
+from epg.connect.draft import SetEnds, SetValue
 from epg.connect.editor import Editor
 from epg.connect.files import Unsavable
 from epg.connect.pictures import draw
@@ -51,7 +51,7 @@ def any_edit(editor: Editor, chance: random.Random) -> None:
         elif kind < 0.65:
             editor.edit((SetEnds(chance.choice(PORTS), None),))
         elif kind < 0.7:
-            editor.edit((SetExtends(f"rpi_pico_bare_metal_{chance.choice(['jiwy', 'relbot'])}.tcf"),))
+            editor.edit((SetValue(("extends",), f"rpi_pico_bare_metal_{chance.choice(['jiwy', 'relbot'])}.tcf"),))
         elif kind < 0.85:
             editor.undo()
         else:

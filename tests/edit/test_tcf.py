@@ -11,7 +11,7 @@ import pytest
 import epg.edit.tcf
 from epg.diagnostics import Diagnostics
 from epg.documents.yaml_file import parse_yaml
-from epg.edit.tcf import leave_out, set_extends
+from epg.edit.tcf import Value, remove_value, set_value
 from epg.edit.yaml_edit import CannotEdit
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -28,6 +28,7 @@ EXAMPLES = {
     "a path": ("extends: a.tcf\n", "../my-robots/a_b.tcf", "extends: ../my-robots/a_b.tcf\n"),
     "a name with all there is": ("extends: a.tcf\n", "my 'robot': #1.tcf", "extends: 'my ''robot'': #1.tcf'\n"),
     "a name with a line end": ("extends: a.tcf\n", "a\nnode: b", 'extends: "a\\u000Anode: b"\n'),
+    "a list": ("version: 1\nextends: [a.tcf, b.tcf]\n", "c.tcf", "version: 1\nextends: c.tcf\n"),
     "the same": ("extends:  'a.tcf'\n", "a.tcf", "extends:  'a.tcf'\n"),
 }
 
@@ -35,8 +36,8 @@ EXAMPLES = {
 @pytest.mark.parametrize("what", EXAMPLES)
 def test_only_that_changes(what: str) -> None:
     before, name, after = EXAMPLES[what]
-    assert set_extends(before, "robot.tcf", name) == after
-    assert set_extends("\ufeff" + before, "robot.tcf", name) == "\ufeff" + after
+    assert set_value(before, "robot.tcf", ["extends"], name) == after
+    assert set_value("\ufeff" + before, "robot.tcf", ["extends"], name) == "\ufeff" + after
     root = parse_yaml(after, "robot.tcf", Diagnostics())
     assert root is not None and root["extends"].value == name
 
@@ -46,19 +47,17 @@ def test_there_and_back(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     root = parse_yaml(text, path.name, Diagnostics())
     assert root is not None
-    changed = set_extends(text, path.name, "another.tcf")
+    changed = set_value(text, path.name, ["extends"], "another.tcf")
     before, after = text.splitlines(), changed.splitlines()
     if "extends" in root:
         assert len(before) == len(after) and sum(a != b for a, b in zip(before, after)) == 1
-        assert set_extends(changed, path.name, root["extends"].value) == text
+        assert set_value(changed, path.name, ["extends"], root["extends"].value) == text
     else:
         after.remove("extends: another.tcf")
         assert after == before
 
 
 REFUSED = {
-    "a list": ("version: 1\nextends: [a.tcf, b.tcf]\n", "robot.tcf:2: 'extends' must be one name"),
-    "a map": ("extends: {a: b}\n", "robot.tcf:1: 'extends' must be one name"),
     "no YAML": ("version: 1\nextends: [\n", "robot.tcf:2: this bracket is not closed"),
     "no map": ("- a\n", "robot.tcf:1: this is not a map"),
     "nothing": ("", "robot.tcf:1: this is not a map"),
@@ -70,7 +69,7 @@ REFUSED = {
 def test_a_text_that_needs_an_editor(what: str) -> None:
     text, message = REFUSED[what]
     with pytest.raises(CannotEdit) as problem:
-        set_extends(text, "robot.tcf", "c.tcf")
+        set_value(text, "robot.tcf", ["extends"], "c.tcf")
     assert str(problem.value).startswith(message)
 
 
@@ -101,5 +100,103 @@ LEFT_OUT = {
 @pytest.mark.parametrize("what", LEFT_OUT)
 def test_parts_are_left_out(what: str) -> None:
     before, after = LEFT_OUT[what]
-    assert leave_out(before, "robot.tcf", [["tilt"], ["guard", "homing"]]) == after
-    assert leave_out(after, "robot.tcf", [["tilt"], ["guard", "homing"]]) == after
+    for path in (["tilt"], ["guard", "homing"]):
+        before = set_value(before, "robot.tcf", ["components", *path], None)
+        after = set_value(after, "robot.tcf", ["components", *path], None)
+    assert before == after == LEFT_OUT[what][1]
+
+
+OWN = """version: 1  # format
+target: rpi_pico2_bare_metal
+node: me
+components:
+  # the left one
+  motor:
+    kind: pwm   # simple
+    pins: {value: GP4}
+    frequency: 20 kHz  # quiet
+  light: {kind: digital_output, pins: {value: GP6}}
+"""
+
+SET: dict[str, tuple[list[str], Value, str, str]] = {
+    "a quantity": (["components", "motor", "frequency"], "1.5 kHz", "frequency: 20 kHz  #", "frequency: 1.5 kHz  #"),
+    "a pin": (["components", "light", "pins", "value"], "GP7", "pins: {value: GP6}}", "pins: {value: GP7}}"),
+    "a number for a text": (["components", "motor", "frequency"], 3, "frequency: 20 kHz", "frequency: 3"),
+    "a new section in its place": (["control", "period"], "1 ms", "node: me\n", "node: me\ncontrol: {period: 1 ms}\n"),
+    "a new parameter": (
+        ["components", "motor", "invert"],
+        True,
+        "frequency: 20 kHz  # quiet\n",
+        "frequency: 20 kHz  # quiet\n    invert: true\n",
+    ),
+    "a map key by key": (
+        ["components", "motor"],
+        {"kind": "pwm", "pins": {"value": "GP5"}, "max_duty": 0.5},
+        "pins: {value: GP4}\n    frequency: 20 kHz  # quiet\n",
+        "pins: {value: GP5}\n    max_duty: 0.5\n",
+    ),
+    "a new component": (
+        ["components", "stop"],
+        {"kind": "digital_input", "pins": {"value": "GP8"}, "pull": "up"},
+        "GP6}}\n",
+        "GP6}}\n  stop: {kind: digital_input, pins: {value: GP8}, pull: up}\n",
+    ),
+    "a long component": (
+        ["components", "guard"],
+        {"kind": "motion_guard", "actuator": "motor", "encoder": "an_encoder_with_a_name", "stall": {"time": "0.5 s"}},
+        "GP6}}\n",
+        "GP6}}\n  guard:\n    kind: motion_guard\n    actuator: motor\n    encoder: an_encoder_with_a_name\n"
+        "    stall: {time: 0.5 s}\n",
+    ),
+    "the same": (["components", "light", "kind"], "digital_output", "", ""),
+}
+
+
+@pytest.mark.parametrize("what", SET)
+def test_a_value_is_set(what: str) -> None:
+    path, value, old, new = SET[what]
+    assert OWN.count(old) == 1 or not old
+    assert set_value(OWN, "robot.tcf", path, value) == OWN.replace(old, new)
+
+
+REMOVED = {
+    "a parameter": (["components", "motor", "frequency"], "    frequency: 20 kHz  # quiet\n", ""),
+    "a map with its last key": (["components", "light", "pins", "value"], ", pins: {value: GP6}", ""),
+    "a component": (["components", "light"], "  light: {kind: digital_output, pins: {value: GP6}}\n", ""),
+    "no such key": (["control", "period"], "", ""),
+}
+
+
+@pytest.mark.parametrize("what", REMOVED)
+def test_a_value_is_removed(what: str) -> None:
+    path, old, new = REMOVED[what]
+    assert remove_value(OWN, "robot.tcf", path) == OWN.replace(old, new)
+
+
+def test_the_last_component_is_removed() -> None:
+    own = "version: 1\nnode: me\ncomponents:\n  light: {kind: x}  # lamp\n"
+    assert remove_value(own, "robot.tcf", ["components", "light"]) == "version: 1\nnode: me\ncomponents: {}\n"
+    extending = own.replace("node: me", "extends: host_jiwy.tcf")
+    assert remove_value(extending, "robot.tcf", ["components", "light"]) == "version: 1\nextends: host_jiwy.tcf\n"
+    assert set_value(extending, "robot.tcf", ["components"], {}) == extending.replace(
+        "\n  light: {kind: x}  # lamp", " {}"
+    )
+
+
+@pytest.mark.parametrize("path", CONFIGURATIONS, ids=lambda path: path.name)
+def test_each_value_is_set_and_removed(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    root = parse_yaml(text, path.name, Diagnostics())
+    assert root is not None
+    for name, node in root["components"].items() if "components" in root else ():
+        for key, _ in node.items() if node.is_mapping else ():
+            there = ["components", name, key]
+            changed = set_value(text, path.name, there, "1 ms")
+            after = parse_yaml(changed, path.name, Diagnostics())
+            assert after is not None and after["components"][name][key].value == "1 ms"
+            if not node[key].is_mapping:
+                assert set_value(changed, path.name, there, node[key].plain()) == text
+            after = parse_yaml(remove_value(text, path.name, there), path.name, Diagnostics())
+            assert after is not None
+            left = after.plain().get("components", {})
+            assert key not in left.get(name, {})
