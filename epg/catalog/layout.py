@@ -31,10 +31,14 @@ class Row:
 
 @dataclass(frozen=True)
 class Supply:
-    """The description of contacts that are not pins: ``role`` is "ground", "supply" or "other"."""
+    """The description of contacts that are not pins: ``role`` is "ground", "supply" or "other".
+
+    ``feeds_components`` is True for the supply of components whose signals have the levels of the pins.
+    """
 
     role: str
     title: str
+    feeds_components: bool = False
 
 
 @dataclass(frozen=True)

@@ -39,11 +39,14 @@ TYPES = {
     ".css": "text/css; charset=utf-8",
     ".svg": "image/svg+xml",
 }
-_PICTURES_STYLE = base64.b64encode(hashlib.sha256(style_sheet().encode()).digest()).decode()
-"""The hash of the pictures' style sheet.  The page's security policy also holds for a picture that is opened alone."""
+_PICTURES_STYLES = " ".join(
+    f"'sha256-{base64.b64encode(hashlib.sha256(style_sheet(landscape=wide).encode()).digest()).decode()}'"
+    for wide in (False, True)
+)
+"""The hashes of the pictures' style sheets.  The page's security policy also holds for a picture that is opened alone."""
 HEADERS = {
     "Content-Security-Policy": "default-src 'none'; script-src 'self'; "
-    f"style-src 'self' 'sha256-{_PICTURES_STYLE}'; img-src 'self' blob:; "
+    f"style-src 'self' {_PICTURES_STYLES}; img-src 'self' blob:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
     "Cache-Control": "no-store",
     "Cross-Origin-Opener-Policy": "same-origin",

@@ -44,6 +44,7 @@ text { font-family: ui-monospace, 'DejaVu Sans Mono', Menlo, Consolas, monospace
 .ground { fill: #1f2328; stroke: #1f2328; }
 .supply { fill: #d1242f; stroke: #1f2328; }
 .other { fill: #bf8700; stroke: #1f2328; }
+.sign { fill: none; stroke: #ffffff; stroke-width: 1.6; }
 .line { fill: none; stroke: #1f2328; stroke-width: 1.4; }
 .earth { fill: none; stroke: #1f2328; stroke-width: 1.6; stroke-dasharray: 6 3; }
 .faint { fill: #59636e; }
@@ -61,6 +62,7 @@ text { fill: #f0f6fc; }
 .ground { fill: #f0f6fc; stroke: #f0f6fc; }
 .supply { fill: #ff7b72; stroke: #f0f6fc; }
 .other { fill: #d29922; stroke: #f0f6fc; }
+.sign { stroke: #0d1117; }
 .line, .earth { stroke: #f0f6fc; }
 .faint { fill: #9198a1; }
 """
@@ -122,7 +124,7 @@ class Picture:
             f'viewBox="{_n(x)} {_n(y)} {_n(wide)} {_n(high)}" role="img" aria-labelledby="title description">',
             f'<title id="title">{escape(self.title)}</title>',
             f'<desc id="description">{escape(self.description)}</desc>',
-            f"<style>{style_sheet()}</style>",
+            f"<style>{style_sheet(landscape=wide > high)}</style>",
             f'<rect x="{_n(x)}" y="{_n(y)}" width="{_n(wide)}" height="{_n(high)}" class="back"/>',
             *self._shapes,
             "</svg>",
@@ -143,17 +145,18 @@ class Picture:
         self._right, self._bottom = max(self._right, right), max(self._bottom, bottom)
 
 
-def style_sheet() -> str:
-    """The text of ``<style>``.
+def style_sheet(*, landscape: bool) -> str:
+    """The text of ``<style>``.  A picture that is printed fills one page, in portrait or ``landscape``.
 
-    It is the same in every picture, so that the content security policy of a page can allow exactly this text by its
-    hash.
+    There are only these two texts, so that the content security policy of a page can allow them by their hashes.
     """
     style, dark = _STYLE, _DARK
     for index, (light, night) in enumerate(_COLOURS):
         style += f".w{index} {{ fill: none; stroke: {light}; stroke-width: 2.2; }}\n.t{index} {{ fill: {light}; }}\n"
         dark += f".w{index} {{ stroke: {night}; }}\n.t{index} {{ fill: {night}; }}\n"
-    return f"{style}@media (prefers-color-scheme: dark) {{{dark}}}\n"
+    page = f"@page {{ size: A4 {'landscape' if landscape else 'portrait'}; margin: 10mm; }}\n"
+    page += "@media print { svg { width: 100vw; height: 100vh; } }\n"
+    return f"{style}@media screen and (prefers-color-scheme: dark) {{{dark}}}\n{page}"
 
 
 def _n(value: float) -> str:

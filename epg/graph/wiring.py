@@ -121,6 +121,11 @@ def pin_title(target: Target, pin: str) -> str:
     return prefix + pin
 
 
+def printed_names(target: Target, pin: str) -> str:
+    """The names of a SoC's pin that are printed on the board, and that differ from :func:`pin_title`: ``D6``."""
+    return " ".join(name for name, named in target.board.names.items() if named == pin)
+
+
 def wire_texts(kind: Kind, claims: Mapping[str, Assignment], target: Target) -> list[str]:
     """The pin of each signal, such as ``a GP10``, of a component with these ``claims``.  Empty if there are no pins."""
     return [f"{signal} {pin_title(target, pin)}" for signal, pin, _ in _signals(target, kind, claims)]
@@ -174,7 +179,8 @@ def _contacts(picture: Picture, target: Target, layout: Layout, side: str, used:
     for place, contact in _places(layout, side).items():
         y = place * PITCH
         role = layout.role(contact)
-        name = pin_title(target, contact.pin) if contact.pin else contact.name
+        printed = printed_names(target, contact.pin) if contact.pin else ""
+        name = " ".join(filter(None, (pin_title(target, contact.pin), printed))) if contact.pin else contact.name
         note = layout.supplies[contact.name].title if not contact.pin else ""
         style = "contact" if role == "pin" else role
         x = sign * _INSIDE
@@ -182,6 +188,8 @@ def _contacts(picture: Picture, target: Target, layout: Layout, side: str, used:
         style = f"used t{used[place]}" if place in used else style
         shown = f"contact {contact.number}: {name}{': ' if note else ''}{note}"
         picture.box(x - half, y - half, 2 * half, 2 * half, style, shown, round)
+        if place not in used:
+            _sign(picture, x, y, role)
         picture.text(x - sign * 12, y + 4, str(contact.number), anchor, _SMALL, "faint")
         weight = "bold" if place in used or role in ("ground", "supply") else ""
         picture.text(x - sign * 34, y + 4, name, anchor, 11, weight)
@@ -190,6 +198,15 @@ def _contacts(picture: Picture, target: Target, layout: Layout, side: str, used:
         if row.side == side:
             picture.text(sign * (_INSIDE - 12), line * PITCH - 14, row.title, anchor, 11, "bold")
             line += len(row.contacts) + 2
+
+
+def _sign(picture: Picture, x: float, y: float, role: str) -> None:
+    """Draws the sign of a contact that is not a pin, so that roles differ without their colours, too."""
+    if role == "supply":
+        picture.line([(x - 3.4, y), (x + 3.4, y)], "sign")
+        picture.line([(x, y - 3.4), (x, y + 3.4)], "sign")
+    elif role == "other":
+        picture.line([(x - 2.4, y - 2.4), (x + 2.4, y + 2.4)], "sign")
 
 
 def _parts(components: Mapping[str, Component], found: Sequence[Terminal], other: set[str]) -> list[_Part]:
@@ -314,15 +331,21 @@ def _notes(picture: Picture, layout: Layout, others: Sequence[str], driven: bool
         if not contact.pin:
             rows.setdefault(contact.name, []).append(contact.number)
     texts = [(f"{name} ({', '.join(map(str, sorted(rows[name])))}): {layout.supplies[name].title}") for name in rows]
-    marks = [("used t0", 1, "used: the colour is that of the wire"), ("contact", 5, "free pin")]
-    marks += [(layout.supplies[name].role, 5, text) for name, text in zip(rows, texts, strict=True)]
+    marks = [("used t0", 1, "", "used: the colour is that of the wire"), ("contact", 5, "", "free pin")]
+    for name, text in zip(rows, texts, strict=True):
+        role = layout.supplies[name].role
+        marks.append((role, 5, role, text))
+    feeding = [f"{name} ({rows[name][0]})" for name in rows if layout.supplies[name].feeds_components]
     general = [*others, *layout.notes, "Seen from above. Dashed: grounds, which are all connected."]
+    if feeding:
+        general.append(f"VCC of encoders and other sensors: {' or '.join(feeding)}. Motors need a separate supply.")
     if driven:
         general.append(f"{_RESISTOR}: from each wire of the component, which floats until the firmware runs.")
     x = -max(width(text, 11) for text in [*texts, *general]) / 2
     y = picture.bottom + 34
-    for style, round, text in marks:
+    for style, round, role, text in marks:
         picture.box(x - 16, y - 9, 10, 10, style, round=round)
+        _sign(picture, x - 11, y - 4, role)
         picture.text(x, y, text, size=11)
         y += 18
     for text in general:

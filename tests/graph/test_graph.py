@@ -89,7 +89,9 @@ def test_pictures_are_readable(what: str, target: str, robot: str, capsys: pytes
     titles = {element.attrib["id"]: element.text for element in svg.root if "id" in element.attrib}
     assert titles.keys() == set(svg.root.attrib["aria-labelledby"].split())
     assert all(titles.values())
-    assert "@media (prefers-color-scheme: dark)" in text
+    assert "@media screen and (prefers-color-scheme: dark)" in text
+    _, _, wide, high = svg.box
+    assert f"size: A4 {'landscape' if wide > high else 'portrait'}" in text
     assert draw(capsys, f"{target}_{robot}", "--what", what, *example(robot)) == text
 
 
@@ -135,6 +137,14 @@ def test_both_sides_few_grounds_and_what_is_on_the_board(big: Path, capsys: pyte
     assert svg.words.count("pwm_h_bridge (part)") == 4
     assert "led value: GP25, the LED on the board" in svg.words
     assert svg.words.count("10 kΩ to ground") == 7
+
+
+def test_the_contacts_show_supplies_and_the_names_on_the_board(capsys: pytest.CaptureFixture[str]) -> None:
+    svg = Svg(draw(capsys, "rpi_pico2_freertos_jiwy", "--what", "wiring"))
+    assert "VSYS (39): input: 1.8 V to 5.5 V for the board; output: the voltage that supplies the board" in svg.words
+    assert "VCC of encoders and other sensors: 3V3 (36). Motors need a separate supply." in svg.words
+    signs = [line for line in svg.lines if line.style == "sign"]
+    assert len(signs) == 2 * (3 + 3) + 4 + 4  # crosses on the supplies and in the legend; strokes on the others
 
 
 def test_the_application_shows_every_port_and_its_way(capsys: pytest.CaptureFixture[str]) -> None:
