@@ -87,9 +87,13 @@ def rp2040js() -> Path:
 
 
 def npm_package(locked_by: Path, name: str) -> Path:
-    """The folder of the npm package that the lock file in ``locked_by`` names; installed into EPG's cache once."""
-    version = json.loads((locked_by / "package.json").read_text(encoding="utf-8"))["dependencies"][name]
-    folder = cache_folder() / f"{name}-{version}"
+    """The folder of an npm package that the lock file in ``locked_by`` names.
+
+    All packages of the lock file are installed into EPG's cache once.
+    """
+    title = json.loads((locked_by / "package.json").read_text(encoding="utf-8"))["name"]
+    digest = hashlib.sha256((locked_by / "package-lock.json").read_bytes()).hexdigest()[:12]
+    folder = cache_folder() / f"{title}-{digest}"
     package = folder / "node_modules" / name
     with locked(folder):
         if not (package / "package.json").is_file():

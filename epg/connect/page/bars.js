@@ -9,6 +9,7 @@ import { attempt, change, draw, ui } from "./ui.js";
 
 let dismissed = null; // the note about an edit by another program that the user has dismissed
 
+/** @param {State} state */
 export function bars(state) {
   if (hasEnded()) return [];
   const list = [];

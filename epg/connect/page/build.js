@@ -41,6 +41,7 @@ function question() {
   ];
 }
 
+/** @param {State} state */
 export function buildTitle(state) {
   return { idle: "Build", running: "Build …", done: "Build ✓", failed: "Build ✕", cancelled: "Build" }[
     state.build.state
@@ -48,6 +49,7 @@ export function buildTitle(state) {
 }
 
 // Must be called with every new state. Announces the end of a build, and fetches new lines of the log.
+/** @param {State} state */
 export function followBuild(state) {
   const { build } = state;
   since = { seconds: build.seconds, at: performance.now() };
@@ -77,6 +79,7 @@ async function fetchLog() {
   draw();
 }
 
+/** @param {State} state */
 function outcome(state) {
   const { build } = state;
   const errors = build.messages.filter(isError).length;
@@ -89,6 +92,7 @@ function outcome(state) {
   }[build.state];
 }
 
+/** @param {State} state */
 export function buildPanel(state) {
   const { build } = state;
   if (build.state === "idle") {
@@ -103,6 +107,7 @@ export function buildPanel(state) {
   ];
 }
 
+/** @param {State} state */
 function status(state) {
   const { build } = state;
   const name = { done: "done", failed: "error", cancelled: "note" }[build.state];
@@ -117,6 +122,7 @@ function status(state) {
   );
 }
 
+/** @param {Build} build */
 function elapsed(build) {
   const more = build.state === "running" && since ? (performance.now() - since.at) / 1000 : 0;
   const seconds = Math.floor(build.seconds + more);
@@ -128,6 +134,7 @@ setInterval(() => {
 }, 1000);
 
 // While the number of steps is unknown, the bar has no value: the browser then draws it moving.
+/** @param {Build} build */
 function progress(build) {
   if (build.state !== "running") return null;
   const known = build.total > 0;
@@ -139,6 +146,7 @@ function progress(build) {
   });
 }
 
+/** @param {Build["products"][number]} made */
 function product({ path, what }) {
   return h(
     "li",
@@ -158,6 +166,7 @@ async function copy(text, button) {
   setTimeout(() => (button.textContent = "Copy path"), 1500);
 }
 
+/** @param {Build} build */
 function logPart(build) {
   return h(
     "details",

@@ -3,6 +3,7 @@
 
 import { h } from "./dom.js";
 
+/** @param {State} state */
 export function changes(state) {
   const { diff } = state.draft;
   if (!diff) return h("p.empty", "There are no changes since the files were saved.");

@@ -6,6 +6,11 @@ import { componentLabel, handle, match } from "./handles.js";
 import { inline } from "./problems.js";
 import { unitMark } from "./wiring.js";
 
+/**
+ * @param {State} state
+ * @param {Map<string, Message[]>} diagnostics
+ * @param {Map<string, User[]>} users
+ */
 export function componentColumn(state, side, diagnostics, users) {
   const direction = side === "sources" ? "source" : "sink";
   const shown = state.components.filter((component) => component.ports.some((port) => port.direction === direction));
@@ -20,6 +25,12 @@ export function componentColumn(state, side, diagnostics, users) {
   );
 }
 
+/**
+ * @param {State} state
+ * @param {Component} component
+ * @param {Map<string, Message[]>} diagnostics
+ * @param {Map<string, User[]>} users
+ */
 function card(state, side, component, direction, diagnostics, users) {
   const { name, kind, summary, where, peripheral, topic } = component;
   const ports = component.ports.filter((port) => port.direction === direction);
@@ -49,6 +60,11 @@ function card(state, side, component, direction, diagnostics, users) {
   );
 }
 
+/**
+ * @param {State} state
+ * @param {ComponentPort} port
+ * @param {User[]} users
+ */
 function row(state, side, port, users) {
   const { reference, name } = port;
   const converted = users.find((user) => user.end.from_tcf)?.end.from_tcf;

@@ -10,6 +10,10 @@ const NO_ROBOT = "Board only";
 
 // The list of cards. Each is a radio button; ui.chosen is the chosen one. `only` is a function that returns true for the
 // configurations to list.
+/**
+ * @param {StartState} state
+ * @param {(configuration: Configuration) => boolean} only
+ */
 export function configurationCards(state, only = () => true) {
   const configurations = state.configurations.filter(only);
   const robots = [...new Set(configurations.map((each) => each.robot || NO_ROBOT))];
@@ -33,6 +37,7 @@ export function configurationCards(state, only = () => true) {
   );
 }
 
+/** @param {Configuration} configuration */
 function isShown(configuration) {
   const { text, robot, fits } = ui.filter;
   if (robot && (configuration.robot || NO_ROBOT) !== robot) return false;
@@ -45,19 +50,21 @@ function isShown(configuration) {
     .every((word) => words.includes(word));
 }
 
+/** @param {Configuration} configuration */
 const isReady = (configuration) => configuration.possible && configuration.missing.length === 0;
+const readyFirst = (a, b) => Number(isReady(b)) - Number(isReady(a));
 
 // Returns [{robot, boards: [{board, list}]}]. The robot with the most matching ports is first; boards without a robot
 // are last. Of each robot, the boards for which this computer can build now are first.
 function grouped(configurations) {
   const best = (all) => Math.max(...all.map((each) => each.matches));
   return [...Map.groupBy(configurations, (each) => each.robot || NO_ROBOT)]
-    .sort(([a, ofA], [b, ofB]) => (a === NO_ROBOT) - (b === NO_ROBOT) || best(ofB) - best(ofA))
+    .sort(([a, ofA], [b, ofB]) => Number(a === NO_ROBOT) - Number(b === NO_ROBOT) || best(ofB) - best(ofA))
     .map(([robot, all]) => ({
       robot,
       boards: [...Map.groupBy(all, (each) => each.board)]
-        .map(([board, list]) => ({ board, list: list.sort((a, b) => isReady(b) - isReady(a)) }))
-        .sort((a, b) => isReady(b.list[0]) - isReady(a.list[0])),
+        .map(([board, list]) => ({ board, list: list.sort(readyFirst) }))
+        .sort((a, b) => readyFirst(a.list[0], b.list[0])),
     }));
 }
 
@@ -113,6 +120,7 @@ function robotGroup({ robot, boards }) {
   );
 }
 
+/** @param {Configuration} configuration */
 function card(configuration) {
   const { name, platform, picture, components, matches, ports, missing, possible, reason, chosen } = configuration;
   const [title, ...more] = platform.split(/[:,] /);

@@ -19,6 +19,7 @@ export function editConversion(port, n) {
   const apply = async (event) => {
     event.preventDefault();
     const value = (name) => event.target.elements[name].value.trim();
+    /** @type {[string, string] | null} */
     const limits = value("low") || value("high") ? [value("low"), value("high")] : null;
     if (limits && !(limits[0] && limits[1])) {
       error = { message: "Limits need both values, the lowest and the highest", hint: "" };
@@ -107,6 +108,10 @@ const fieldsOf = ({ scale, offset, limits, unit }) => ({
 });
 
 // Two values before and after the conversion in the fields, with their units: "0 deg → 0 rad, 1 deg → 0.0174533 rad".
+/**
+ * @param {{ side: string, port: Port }} found
+ * @param {End} end
+ */
 function preview({ side, port }, end, { scale, offset, low, high, unit }) {
   const modelUnit = unit || end.model_unit || port.unit;
   const { component_unit: componentUnit } = end;

@@ -10,6 +10,7 @@ import { picture } from "./pictures.js";
 import { problemList } from "./problems.js";
 import { change, openTab, ui } from "./ui.js";
 
+/** @param {State} state */
 function tabs(state) {
   const { pictures, diagnostics } = state;
   return [
@@ -23,6 +24,7 @@ function tabs(state) {
   ].filter(Boolean);
 }
 
+/** @param {State} state */
 export function dock(state) {
   const all = tabs(state);
   const shown = all.find((each) => each.name === ui.tab) || all[0];

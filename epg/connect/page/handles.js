@@ -9,7 +9,7 @@ import { OPPOSITE, disconnect, endsOf, fits, isUnconnected, join, modelPort, ofM
 
 const stops = {}; // side -> name of the handle that the Tab key reaches
 
-export const handleId = (side, name) => id("handle", side, name);
+const handleId = (side, name) => id("handle", side, name);
 
 export function handle(side, name, label, connected) {
   const held = ui.held !== null && ui.held.side === side && ui.held.name === name;
@@ -28,6 +28,7 @@ export function handle(side, name, label, connected) {
 }
 
 // The CSS class that marks a port while the user holds an end of a wire: "fits" or "other", "is-held" for that end.
+/** @param {State} state */
 export function match(state, side, name) {
   if (ui.held === null) return "";
   if (ui.held.side === side) return ui.held.name === name ? "is-held" : "";
@@ -135,18 +136,27 @@ function move(here, by) {
   }
 }
 
+/**
+ * @param {State} state
+ * @param {Port} port
+ */
 export function modelLabel(state, side, port) {
   const ends = endsOf(state, port.name).map((end) => end.reference);
   const how = isUnconnected(state, port.name) ? "unconnected on purpose" : ends.join(" and ") || "not connected";
   return `${side === "inputs" ? "input" : "output"} ${port.name}, ${unitText(port)}, ${how}`;
 }
 
+/**
+ * @param {ComponentPort} port
+ * @param {User[]} users
+ */
 export function componentLabel(side, port, users) {
   const ports = users.map((user) => user.port).join(" and ");
   const how = ports ? `connected with ${ports}` : "not connected";
   return `${side === "sources" ? "source" : "sink"} ${port.reference}, ${unitText(port)}, ${how}`;
 }
 
+/** @param {State} state */
 export const isKnown = (state) =>
   ui.held === null ||
   (ofModel(ui.held.side)

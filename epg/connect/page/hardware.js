@@ -12,6 +12,7 @@ const COLUMNS = [
   ["remark", "Remark"],
 ];
 
+/** @param {State} state */
 export function hardware(state) {
   if (state.hardware.length === 0) return h("p.empty", "The target uses no pins or peripherals.");
   const columns = COLUMNS.filter(([name]) => state.hardware.some((row) => row[name]));

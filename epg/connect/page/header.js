@@ -10,6 +10,7 @@ import { counted, shortFile } from "./problems.js";
 import { current } from "./server.js";
 import { attempt, openTab } from "./ui.js";
 
+/** @param {State} state */
 export function header(state) {
   const brand = h("p.brand", { key: "brand" }, icon("target"), h("span", "EPG"));
   const close = h("button.quiet", { key: "close", onclick: () => askToClose(state) }, "Close EPG");
@@ -44,6 +45,7 @@ export function header(state) {
 }
 
 // Closes EPG. If there are unsaved changes, the user first decides about them.
+/** @param {State} state */
 function askToClose(state) {
   if (!state.draft?.changed) return attempt("done");
   const save = async () => {
@@ -61,7 +63,11 @@ function askToClose(state) {
       h("button", { type: "button", onclick: discard }, "Close without saving"),
       h("span.space"),
       h("button", { type: "button", onclick: closeDialog }, "Cancel"),
-      h("button", { type: "button", class: "primary", onclick: save, disabled: current().draft.conflict }, "Save and close"),
+      h(
+        "button",
+        { type: "button", class: "primary", onclick: save, disabled: current().draft.conflict },
+        "Save and close",
+      ),
     ),
   ]);
 }
@@ -74,6 +80,7 @@ function button(text, keys, enabled, onclick) {
   );
 }
 
+/** @param {State} state */
 function projectName(state) {
   const { name, folder, targets } = state.project;
   if (targets.length < 2) return h("h1.title", { key: "title", title: folder }, name);
@@ -94,6 +101,7 @@ function projectName(state) {
   );
 }
 
+/** @param {State} state */
 function targetButton(state) {
   const chosen = state.configurations.find((each) => each.chosen);
   const name = chosen ? chosen.name : shortFile(state.project.files.tcf);
@@ -105,6 +113,7 @@ function targetButton(state) {
   );
 }
 
+/** @param {State} state */
 function problemsButton(state) {
   const { errors, warnings, text } = counted(state.diagnostics);
   return h(

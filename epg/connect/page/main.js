@@ -44,6 +44,7 @@ function drawPage() {
   drawWires();
 }
 
+/** @param {State} state */
 function diagram(state) {
   if (!state.model) {
     return [h("p.empty", { key: "none" }, "The model cannot be read. The tab Problems shows the reason.")];
@@ -83,7 +84,8 @@ whenDrawn(drawPage);
 document.addEventListener("keydown", (event) => {
   const state = current();
   if (!(event.ctrlKey || event.metaKey) || event.altKey || state?.phase !== "connect") return;
-  const writing = event.target.matches?.("input[type=text], input[type=search], textarea");
+  const writing =
+    event.target instanceof Element && event.target.matches("input[type=text], input[type=search], textarea");
   const key = event.key.toLowerCase();
   if (key === "s") {
     event.preventDefault();

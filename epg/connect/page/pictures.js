@@ -6,6 +6,7 @@ import { getPicture } from "./server.js";
 import { draw } from "./ui.js";
 
 // The picture, or the last one before the errors that prevent a new one.
+/** @param {State} state */
 export function picture(state, name) {
   const isNew = state.pictures[name];
   const key = `${state.project.name} ${name}`;
@@ -77,6 +78,7 @@ async function fetchWiring(image) {
   }
 }
 
+/** @param {State} state */
 function description(state, name) {
   if (name === "application")
     return "Topics, components, conversions and ports of the application. The lists of ports contain the same.";

@@ -10,6 +10,7 @@ import { current } from "./server.js";
 import { attempt, change, say, ui } from "./ui.js";
 import { disconnect, endsOf, fits, isUnconnected, replaceEnd, setEnds, unitMark } from "./wiring.js";
 
+/** @param {State} state */
 export function modelHead(state) {
   const { model, proposals, unused } = state;
   const count = Object.keys(proposals).length;
@@ -59,6 +60,10 @@ function stepText(step) {
     : `step ${Number((step * 1e3).toPrecision(6))} ms`;
 }
 
+/**
+ * @param {State} state
+ * @param {Map<string, Message[]>} diagnostics
+ */
 export function modelPorts(state, side, diagnostics) {
   const ports = state.model[side];
   const title = side === "inputs" ? "Inputs" : "Outputs";
@@ -74,6 +79,11 @@ export function modelPorts(state, side, diagnostics) {
   );
 }
 
+/**
+ * @param {State} state
+ * @param {Port} port
+ * @param {Message[]} diagnostics
+ */
 function row(state, side, port, diagnostics) {
   const { name } = port;
   const ends = endsOf(state, name);
@@ -115,6 +125,11 @@ function row(state, side, port, diagnostics) {
 
 // One end of a port: its handle, the list of component ports, and the conversion of its wire. `end` is null for an end
 // without a wire; `n` is the number of the end, from 0.
+/**
+ * @param {State} state
+ * @param {Port} port
+ * @param {End | null} end
+ */
 function field(state, side, port, end, n) {
   const { name } = port;
   const ends = endsOf(state, name);
@@ -154,6 +169,11 @@ function field(state, side, port, end, n) {
   );
 }
 
+/**
+ * @param {State} state
+ * @param {Port} port
+ * @param {End | null} end
+ */
 function options(state, side, port, end, n) {
   const { name } = port;
   const more = n > 0 && end === null;
@@ -182,6 +202,10 @@ function choose(side, name, n, value) {
   return replaceEnd(name, n, value.slice(1));
 }
 
+/**
+ * @param {Port} port
+ * @param {End} end
+ */
 function conversionButton(port, side, end, n) {
   const words = side === "inputs" ? `${end.reference} to ${port.name}` : `${port.name} to ${end.reference}`;
   return h(

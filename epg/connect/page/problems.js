@@ -7,8 +7,10 @@ import { current } from "./server.js";
 import { showSource } from "./source.js";
 import { change, ui } from "./ui.js";
 
+/** @param {Message} message */
 export const isError = (message) => message.severity === "error";
 
+/** @param {Message[]} diagnostics */
 export function counted(diagnostics) {
   const errors = diagnostics.filter(isError).length;
   const warnings = diagnostics.filter((each) => each.severity === "warning").length;
@@ -20,6 +22,7 @@ export function counted(diagnostics) {
 const LISTED = new Set(["unbound-input", "unbound-output"]);
 
 // The messages about a port or component, below its name.
+/** @param {Message[]} diagnostics */
 export function inline(diagnostics) {
   if (diagnostics.length === 0) return null;
   return h(
@@ -41,6 +44,7 @@ export function inline(diagnostics) {
   );
 }
 
+/** @param {State} state */
 export function problemList(state) {
   if (state.diagnostics.length === 0) {
     return h("p.empty", icon("done"), "No problems. The target can be generated.");
@@ -48,7 +52,7 @@ export function problemList(state) {
   return h("ul.problem-list", state.diagnostics.map(problem));
 }
 
-const placeText = (file, { line, column }) => [file, line, column].filter(Boolean).join(":");
+const placeText = (file, line, column = null) => [file, line, column].filter(Boolean).join(":");
 
 // A short name of a file: relative to the project's folder, else the last two parts of its path.
 export function shortFile(file) {
@@ -59,9 +63,10 @@ export function shortFile(file) {
 }
 
 // One message as a button. A click leads to its port, or else shows its line.
+/** @param {Message} message */
 export function problem(message) {
-  const full = placeText(message.file, message);
-  const place = placeText(shortFile(message.file), message);
+  const full = placeText(message.file, message.line, message.column);
+  const place = placeText(shortFile(message.file), message.line, message.column);
   return h(
     "li",
     { class: message.severity },
@@ -82,11 +87,12 @@ export function problem(message) {
       h(
         "button.quiet",
         { onclick: () => showSource(message), "aria-label": `Show ${place}`, title: full },
-        placeText(message.file.split(/[\\/]/).pop(), { line: message.line }),
+        placeText(message.file.split(/[\\/]/).pop(), message.line),
       ),
   );
 }
 
+/** @param {Message} message */
 function goTo(message) {
   if (message.port && focusPort(message.port)) return;
   if (message.file) showSource(message);

@@ -3,12 +3,14 @@
 
 import { lock, sign, unlock, whyLocked } from "./key.js";
 
+/** @type {State | null} */
 let state = null;
 let lost = false;
 let locked = null;
 let ended = false;
 let changed = () => {};
 
+// Before a target is chosen, the state has the keys of StartState only.
 export const current = () => state;
 export const isLost = () => lost;
 export const hasEnded = () => ended;
@@ -60,6 +62,7 @@ let before = Promise.resolve(); // the last action
 
 // Does an action after all earlier ones, so that a change that was made just before "save" is saved. Returns null, or the
 // error if it was refused: {message, hint}.
+/** @returns {Promise<Refusal | null>} */
 export function act(action, body = {}) {
   const done = before.then(() => send(action, body));
   before = done.catch(() => {}); // the caller reports the error

@@ -5,6 +5,7 @@ import { openDialog } from "./dialog.js";
 import { h } from "./dom.js";
 import { getJson } from "./server.js";
 
+/** @param {Message} message */
 export async function showSource(message) {
   const notes = message.notes || [];
   const places = [message, ...notes];

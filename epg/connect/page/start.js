@@ -10,6 +10,7 @@ import { unitMark } from "./wiring.js";
 
 let busy = false;
 
+/** @param {StartState} state */
 export function startPage(state) {
   return h(
     "div.start",
@@ -34,6 +35,7 @@ function heading(id, number, title, text) {
   );
 }
 
+/** @param {Model} model */
 function modelStep(model) {
   if (!model)
     return h("section.step.step-model", { key: "model" }, heading("step-model", 1, "Model", "No model was found."));
@@ -71,6 +73,7 @@ function nameFolder(event) {
   }
 }
 
+/** @param {StartState} state */
 function projectStep(state) {
   const picked = state.configurations.find((each) => each.name === ui.chosen);
   const create = async (event) => {
@@ -99,7 +102,12 @@ function projectStep(state) {
     h(
       "form",
       { onsubmit: create, autocomplete: "off" },
-      textField("create-name", "Name", { name: "name", required: true, initial: state.create.name, oninput: nameFolder }),
+      textField("create-name", "Name", {
+        name: "name",
+        required: true,
+        initial: state.create.name,
+        oninput: nameFolder,
+      }),
       textField("create-folder", "Folder", { name: "folder", required: true, initial: state.create.folder }),
       h("p.picked", picked ? ["Target ", h("b", picked.name)] : h("span.muted", "No target is chosen yet.")),
       picked?.missing.length &&

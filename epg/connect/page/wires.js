@@ -36,21 +36,21 @@ export function drawWires() {
   for (const [port, ends] of Object.entries(state.wires)) {
     ends.forEach((end, n) => {
       const d = curve(anchors.get(id("at", end.reference)), anchors.get(id("wire", port, n)));
-      if (d) paths.push(wire(port, n, end, d, bad.has(port)));
+      if (d) paths.push(wire(port, n, d, bad.has(port)));
     });
   }
   for (const [port, reference] of Object.entries(state.proposals)) {
     const d = curve(anchors.get(id("at", reference)), anchors.get(id("wire", port, 0)));
     if (d) paths.push(h("path.wire.proposed", { key: `${port} ?`, d }));
   }
-  const held = heldCurve(state, anchors, zero);
+  const held = heldCurve(anchors, zero);
   if (held) paths.push(h("path.wire.held", { key: "held", d: held }));
-  svg.setAttribute("width", size.width);
-  svg.setAttribute("height", size.height);
+  svg.setAttribute("width", String(size.width));
+  svg.setAttribute("height", String(size.height));
   render(svg, paths);
 }
 
-function wire(port, n, end, d, isBad) {
+function wire(port, n, d, isBad) {
   const name = `${port} ${n}`;
   return h(
     "g",
@@ -64,7 +64,7 @@ function wire(port, n, end, d, isBad) {
   );
 }
 
-function heldCurve(state, anchors, zero) {
+function heldCurve(anchors, zero) {
   if (ui.held === null) return null;
   const { side, name } = ui.held;
   const from = anchors.get(ofModel(side) ? id("wire", name, 0) : id("at", name));

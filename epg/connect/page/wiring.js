@@ -10,6 +10,7 @@ import { attempt, say, ui } from "./ui.js";
 export const OPPOSITE = { sources: "inputs", inputs: "sources", outputs: "sinks", sinks: "outputs" };
 export const ofModel = (side) => side === "inputs" || side === "outputs";
 
+/** @param {State} state */
 export function modelPort(state, name) {
   for (const side of ["inputs", "outputs"]) {
     const port = state.model?.[side].find((each) => each.name === name);
@@ -18,10 +19,13 @@ export function modelPort(state, name) {
   return null;
 }
 
+/** @param {State} state */
 export const endsOf = (state, port) => state.wires[port] || [];
+/** @param {State} state */
 export const isUnconnected = (state, port) => port in state.wires && state.wires[port].length === 0;
 
 // True if two ends fit in direction, type and unit, according to the server.
+/** @param {State} state */
 export function fits(state, side, name, other) {
   const [port, reference] = ofModel(side) ? [name, other] : [other, name];
   return (state.fits[port] || []).includes(reference);
@@ -38,6 +42,7 @@ export function unitMark(port) {
 }
 
 // The fields of an end that api/connect takes.
+/** @param {Partial<End>} end */
 export function plain({ reference, scale, offset, limits, unit }) {
   return { reference, scale: scale || "", offset: offset || "", limits: limits || null, unit: unit || "" };
 }
@@ -60,7 +65,8 @@ function rewire(wires, port) {
 }
 
 // The ports whose wires end at a component port.
-export const usersOf = (state, reference) =>
+/** @param {State} state */
+const usersOf = (state, reference) =>
   Object.keys(state.wires).filter((port) => endsOf(state, port).some((end) => end.reference === reference));
 
 // Connects a component port and a model port. `side` and `name` are the end that was taken first, `other` is the
@@ -74,6 +80,7 @@ export async function join(side, name, other) {
     say(`${port} and ${reference} are connected already`);
     return;
   }
+  /** @type {Record<string, Partial<End>[]>} */
   const wires = {};
   const replaced = isOutput ? usersOf(state, reference) : [];
   for (const user of replaced) wires[user] = endsOf(state, user).filter((end) => end.reference !== reference);
@@ -100,11 +107,13 @@ export async function move(side, name, other) {
   if (await rewire(wires, ofModel(side) ? other : null)) say(`The wire of ${name} now ends at ${other}`);
 }
 
+/** @param {State} state */
 export const isConnected = (state, side, name) =>
   ofModel(side) ? endsOf(state, name).length > 0 : usersOf(state, name).length > 0;
 
 // Replaces end number `n` of a port, from 0. A `reference` of null removes the end.
 export async function replaceEnd(port, n, reference) {
+  /** @type {Partial<End>[]} */
   const ends = [...endsOf(current(), port)];
   if (reference === null) ends.splice(n, 1);
   else ends.splice(n, 1, { reference });

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// The types of the page's data, for the TypeScript compiler, which checks the page's JavaScript in the tests. The browser
+// does not read this file. The tests also compare State with the states that real sessions send.
+
+/** The state of a session with an open target: epg/connect/session.py makes it from the files and the draft. */
+interface State extends StartState {
+  project: Project & { targets: string[] };
+  components: Component[];
+  /** The ends of each port of the model that the bindings name. An output that is unconnected on purpose has none. */
+  wires: Record<string, End[]>;
+  /** For ports without a wire: the component port with a similar name. */
+  proposals: Record<string, string>;
+  /** For each port of the model: all component ports of the right direction. */
+  candidates: Record<string, string[]>;
+  /** For each port of the model: the candidates that agree with it in type and unit. */
+  fits: Record<string, string[]>;
+  hardware: HardwareRow[];
+  /** For each unit: its dimension, and its factor to the dimension's own unit. */
+  units: Record<string, [string, number]>;
+  /** The pictures of the target: false for a picture that errors prevent. A board without a layout has no "wiring". */
+  pictures: Record<string, boolean>;
+  /** The parts of the robot that no port uses. */
+  unused: string[];
+  draft: Draft;
+  editable: boolean;
+  /** The reason why ports cannot be connected; empty if they can. */
+  why_not: string;
+}
+
+/** The state before a target is chosen for a model. The page shows one of the two phases. */
+interface StartState {
+  version: number;
+  /** The version of EPG. */
+  epg: string;
+  phase: "connect" | "choose";
+  project: (Project & { targets: string[] }) | null;
+  /** The proposed folder and name of a new project; null in the phase "connect". */
+  create: { folder: string; name: string } | null;
+  model: Model | null;
+  diagnostics: Message[];
+  /** Empty until the server has read them. */
+  configurations: Configuration[];
+  build: Build;
+}
+
+interface Project {
+  name: string;
+  folder: string;
+  files: { tcf: string; model: string; bindings: string };
+}
+
+interface Draft {
+  changed: boolean;
+  can_undo: boolean;
+  can_redo: boolean;
+  diff: string;
+  /** Set while an edit by another program and the draft do not fit together. */
+  conflict: Refusal | null;
+  /** A note about an edit by another program. */
+  external: string | null;
+}
+
+interface Model {
+  name: string;
+  origin: string;
+  /** In seconds; 0 if the model has no fixed step. */
+  step: number;
+  inputs: Port[];
+  outputs: Port[];
+}
+
+/** A port of the model. */
+interface Port {
+  name: string;
+  unit: string;
+  type: string;
+  description: string;
+}
+
+interface Component {
+  name: string;
+  kind: string;
+  summary: string;
+  /** Its pins, as "a GP10". */
+  where: string[];
+  peripheral: string;
+  topic: string;
+  ports: ComponentPort[];
+}
+
+interface ComponentPort {
+  name: string;
+  direction: "source" | "sink";
+  /** The port's name in the bindings: "encoder_pan.reset", or the component's name for its main port. */
+  reference: string;
+  unit: string;
+  type: string;
+  summary: string;
+}
+
+/** One end of a wire, with its conversion as the bindings write it. */
+interface End {
+  reference: string;
+  scale: string;
+  offset: string;
+  limits: [string, string] | null;
+  unit: string;
+  /** The conversion in one line; empty if there is none. */
+  text: string;
+  /** The conversion that the component does before. */
+  from_tcf: string;
+  component_unit: string;
+  model_unit: string;
+}
+
+/** A message of EPG or of the build. Messages of compilers have no notes; some have no place. */
+interface Message extends Place {
+  id: string;
+  severity: "error" | "warning" | "note";
+  message: string;
+  hint: string;
+  notes?: (Place & { message: string })[];
+  /** The port of the model that the message is about. */
+  port: string | null;
+  /** That port, and others that the message names. */
+  ports?: string[];
+  component?: string | null;
+}
+
+interface Place {
+  file: string;
+  line: number;
+  column: number;
+}
+
+interface HardwareRow {
+  component: string;
+  claim: string;
+  resource: string;
+  pins: string;
+  frequency: string;
+  remark: string;
+}
+
+/** A target that can be chosen: a predefined .tcf file, or a board with a platform. */
+interface Configuration {
+  name: string;
+  summary: string;
+  robot: string;
+  board: string;
+  platform: string;
+  target: string;
+  chosen: boolean;
+  possible: boolean;
+  reason: string;
+  missing: string[];
+  components: number;
+  /** The number of the model's ports that match a component by name. */
+  matches: number;
+  ports: number;
+  picture: boolean;
+}
+
+interface Build {
+  state: "idle" | "running" | "done" | "failed" | "cancelled";
+  step: string;
+  action: string;
+  done: number;
+  total: number;
+  seconds: number;
+  messages: Message[];
+  products: { path: string; what: string }[];
+  /** The number of lines of the log. */
+  lines: number;
+  /** The question before the first build in a folder. */
+  ask: { folder: string; commands: string[]; programs: string[]; key: string } | null;
+}
+
+/** The server's answer to a refused action. */
+interface Refusal {
+  message: string;
+  hint: string;
+}
+
+type Side = "sources" | "inputs" | "outputs" | "sinks";
+
+/** The user of a component port: an end of the model's port `port`. */
+interface User {
+  port: string;
+  end: End;
+}
+
+// What the compiler's own types of the browser lack. Each element of the page is one of HTML or of SVG.
+interface Element extends HTMLOrSVGElement {}
+interface Document {
+  prerendering?: boolean;
+}

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The linter and the TypeScript compiler read the scripts of the page.  States of real sessions have the page's types."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from epg.connect.session import Session
+from tests.connect.conftest import ROOT, one_axis_project
+from tests.connect.page import session_of
+from tests.emulator.toolchain import npm_package, skip_if_missing
+
+from .axe import HERE
+
+PAGE = ROOT / "epg/connect/page"
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _checkers() -> None:
+    skip_if_missing(lambda: npm_package(HERE, "typescript"))
+
+
+def _run(package: str, *arguments: str | Path) -> str:
+    """The complaints of a checker; empty if it has none."""
+    folder = npm_package(HERE, package)
+    (program,) = json.loads((folder / "package.json").read_text(encoding="utf-8"))["bin"].values()
+    command = [shutil.which("node") or "node", str(folder / program), *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "NO_COLOR": "1"})
+    return "" if done.returncode == 0 else (done.stdout + done.stderr)[:8000] or "no words"
+
+
+def test_the_linter_has_no_complaint() -> None:
+    """Its command ``check --write`` with the same folders applies its corrections."""
+    assert _run("@biomejs/biome", "ci", "--error-on-warnings", f"--config-path={HERE}", PAGE) == ""
+
+
+def test_the_types_agree() -> None:
+    assert _run("typescript", "--project", HERE) == ""
+
+
+def test_each_state_in_a_signature_has_a_type() -> None:
+    """Without a type, the compiler does not see a wrong key."""
+    missing = []
+    for path in sorted(PAGE.glob("*.js")):
+        lines = path.read_text(encoding="utf-8").split("\n")
+        for number, line in enumerate(lines):
+            if line.startswith(("export function", "export async function", "function", "async function")):
+                comment = "\n".join(lines[max(0, number - 12) : number]).rpartition("/**")[2]
+                if "(state" in line and "State} state" not in comment:
+                    missing.append(f"{path.name}:{number + 1}: {line}")
+    assert missing == []
+
+
+def test_the_states_of_sessions_have_these_types(tmp_path: Path) -> None:
+    """The compiler finds keys that are missing, unknown keys, and values of another type."""
+    opened, started = _states(tmp_path)
+    assert {state["phase"] for state in opened} == {"connect"} and {state["phase"] for state in started} == {"choose"}
+    problem = _compiled(tmp_path, opened, started)
+    assert problem == ""
+    wrong = json.loads(json.dumps(opened[0]))
+    wrong["draft"]["can_undo_it"] = wrong["draft"].pop("can_undo")
+    assert "'\"can_undo_it\"' does not exist in type 'Draft'" in _compiled(tmp_path, [wrong], [])
+
+
+def _compiled(folder: Path, opened: list[dict[str, Any]], started: list[dict[str, Any]]) -> str:
+    (folder / "states.ts").write_text(
+        f"const opened: State[] = {json.dumps(opened)};\nconst started: StartState[] = {json.dumps(started)};\n",
+        encoding="utf-8",
+    )
+    settings = {
+        "extends": str(HERE / "tsconfig.json"),
+        "compilerOptions": {"strictNullChecks": True},
+        "include": [str(PAGE / "types.d.ts"), "states.ts"],
+    }
+    (folder / "tsconfig.json").write_text(json.dumps(settings), encoding="utf-8")
+    return _run("typescript", "--project", folder)
+
+
+def _states(folder: Path) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+    """States of sessions with an open target, and of one that has none at first."""
+    session = Session([], model=ROOT / "examples/jiwy/model")
+    started = [session.state(), session.state()]
+    while not started[-1]["configurations"]:  # these are read in the background
+        started[-1] = session.wait(started[-1]["version"], 60)
+    body = {"folder": str(folder / "arm"), "name": "arm", "configuration": "host_jiwy"}
+    opened = [session.act("create", body), session.act("disconnect", {"port": "pwm_tilt"})]
+    ends = [{"reference": "pwm_pan", "scale": "1/2", "limits": ["-1", "1"]}]
+    opened.append(session.act("connect", {"port": "pwm_tilt", "ends": ends}))
+    bindings = folder / "arm/arm.bindings.yaml"
+    text = bindings.read_text(encoding="utf-8")
+    bindings.write_text("inputs: [\n", encoding="utf-8")
+    opened.append(session.wait(session.state()["version"], 10))
+    bindings.write_text(text, encoding="utf-8")
+    opened.append(session.act("reload", {}))
+    assert opened[0]["units"] and opened[1]["proposals"] and opened[2]["diagnostics"][0]["notes"]
+    assert opened[3]["draft"]["conflict"]
+
+    one_axis = session_of(one_axis_project(folder, "rpi_pico_bare_metal_jiwy"))
+    opened += [one_axis.state(), one_axis.act("accept", {})]
+    assert opened[-1]["hardware"] and opened[-1]["unused"]
+
+    cmake = folder / "arm/CMakeLists.txt"
+    cmake.write_text('message(FATAL_ERROR "No!")\n' + cmake.read_text(encoding="utf-8"), encoding="utf-8")
+    opened.append(session.act("generate", {}))
+    state = session.act("generate", {"run": opened[-1]["build"]["ask"]["key"]})
+    while state["build"]["state"] in ("idle", "running"):
+        state = session.wait(state["version"], 60)
+    assert state["build"]["messages"]
+    return [*opened, state], started

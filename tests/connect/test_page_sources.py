@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The sources of the page: nothing in them is left over."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+PAGE = Path(__file__).resolve().parents[2] / "epg/connect/page"
+SCRIPTS = {path.name: path.read_text(encoding="utf-8") for path in sorted(PAGE.glob("*.js"))}
+
+
+def test_each_export_is_imported() -> None:
+    assert len(SCRIPTS) > 20
+    imported = {
+        (Path(file).name, name.split(" as ")[0].strip())
+        for text in SCRIPTS.values()
+        for names, file in re.findall(r"^import \{([^}]*)\} from \"([^\"]+)\";", text, re.MULTILINE)
+        for name in names.split(",")
+    }
+    exported = [
+        (file, name)
+        for file, text in SCRIPTS.items()
+        for name in re.findall(r"^export (?:async )?(?:function|const|let) (\w+)", text, re.MULTILINE)
+    ]
+    assert [f"{file}: {name}" for file, name in exported if (file, name) not in imported] == []
+
+
+def test_each_script_is_loaded() -> None:
+    everything = "".join(SCRIPTS.values()) + (PAGE / "index.html").read_text(encoding="utf-8")
+    assert [name for name in SCRIPTS if not re.search(rf'"(\./)?{re.escape(name)}"', everything)] == []
+
+
+def test_each_class_of_the_style_sheet_is_in_a_script() -> None:
+    """A script may also compose a class: ``dock-${ui.dock}``."""
+    style = re.sub(r"/\*.*?\*/", "", (PAGE / "style.css").read_text(encoding="utf-8"), flags=re.DOTALL)
+    selectors = " ".join(re.findall(r"[^{}]+(?=\{)", style))
+    names = set(re.findall(r"[.#]([a-zA-Z][\w-]*)", selectors))
+    assert len(names) > 80
+    used = "".join(SCRIPTS.values()) + (PAGE / "index.html").read_text(encoding="utf-8")
+    words = set(re.findall(r"[a-zA-Z][\w-]*", used))
+    composed = tuple(re.findall(r"([a-zA-Z][\w-]*-)\$\{", used))
+    assert sorted(name for name in names if name not in words and not name.startswith(composed)) == []
