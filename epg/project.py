@@ -121,8 +121,13 @@ class Parts:
     application: Application | None = None
 
 
-def load_configuration(request: Request, catalog: Catalog, diagnostics: Diagnostics) -> Configuration | None:
-    """The checked configuration of ``request.tcf`` with the settings, or None after reporting mistakes."""
+def load_configuration(
+    request: Request, catalog: Catalog, diagnostics: Diagnostics, *, pins_required: bool = True
+) -> Configuration | None:
+    """The checked configuration of ``request.tcf`` with the settings, or None after reporting mistakes.
+
+    Without ``pins_required``, components may have no pins: :func:`epg.resolve.first_fit.first_fit` proposes some.
+    """
     chain = load_tcf_chain(
         request.tcf,
         request.roots,
@@ -135,7 +140,7 @@ def load_configuration(request: Request, catalog: Catalog, diagnostics: Diagnost
     if not chain:
         return None
     settings = [*_of_system(request.system, chain, catalog, diagnostics), *settings]
-    configuration = check_configuration(chain, settings, catalog, diagnostics)
+    configuration = check_configuration(chain, settings, catalog, diagnostics, pins_required=pins_required)
     if request.ioc is None:
         return configuration
     ioc = read_ioc(request.ioc, diagnostics, request.caller, request.drafts)

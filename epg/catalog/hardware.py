@@ -208,6 +208,10 @@ class Board:
                 return written[len(prefix) :]
         return written
 
+    def pin_title(self, pin: str) -> str:
+        """The chip's ``pin`` as users write it: ``GP10`` for ``10``."""
+        return self.prefixes[0] + pin if self.prefixes and pin.isdigit() else pin
+
 
 @dataclass(frozen=True)
 class Target:

@@ -91,8 +91,13 @@ def check_configuration(
     settings: Sequence[tuple[tuple[str, ...], YamlNode]],
     catalog: Catalog,
     diagnostics: Diagnostics,
+    *,
+    pins_required: bool = True,
 ) -> Configuration | None:
-    """The configuration of ``chain`` with the settings applied to it, or None after reporting mistakes."""
+    """The configuration of ``chain`` with the settings applied to it, or None after reporting mistakes.
+
+    Without ``pins_required``, components may have no pins: EPG proposes some.
+    """
     errors = diagnostics.error_count
     schema = load_schema("tcf")
     for file in chain:
@@ -112,7 +117,7 @@ def check_configuration(
     target = catalog.target(str(target_node.value), target_node.span, diagnostics)
     if target is not None:
         target = _with_clocks(target, root, diagnostics)
-    components = _components(root, target, catalog, diagnostics)
+    components = _components(root, target, catalog, diagnostics, pins_required)
     communication = check_communication(
         root, target, {c.name: c.kind.transport for c in components.values()}, catalog, diagnostics
     )
@@ -160,7 +165,7 @@ def _with_clocks(target: Target, root: YamlNode, diagnostics: Diagnostics) -> Ta
 
 
 def _components(
-    root: YamlNode, target: Target | None, catalog: Catalog, diagnostics: Diagnostics
+    root: YamlNode, target: Target | None, catalog: Catalog, diagnostics: Diagnostics, pins_required: bool
 ) -> dict[str, Component]:
     """The components without mistakes, by name.  Reports the mistakes of the others."""
     section = root["components"]
@@ -188,7 +193,7 @@ def _components(
         named = node.get("node")
         if named is not None:
             check_node(kind, node, named, target, diagnostics)
-        with_pins = target is not None and target.has_pins and named is None
+        with_pins = pins_required and target is not None and target.has_pins and named is None
         if not validate(node, component_schema(kind, with_pins=with_pins), diagnostics):
             continue
         parameters = typed_parameters(kind, node, diagnostics)

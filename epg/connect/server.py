@@ -43,7 +43,7 @@ _PICTURES_STYLES = " ".join(
     f"'sha256-{base64.b64encode(hashlib.sha256(style_sheet(landscape=wide).encode()).digest()).decode()}'"
     for wide in (False, True)
 )
-"""The hashes of the pictures' style sheets.  The page's security policy also holds for a picture that is opened alone."""
+"""The hashes of the pictures' style sheets.  The policy also holds for a picture that is opened alone."""
 HEADERS = {
     "Content-Security-Policy": "default-src 'none'; script-src 'self'; "
     f"style-src 'self' {_PICTURES_STYLES}; img-src 'self' blob:; "

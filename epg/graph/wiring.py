@@ -111,24 +111,18 @@ def elsewhere(
             if pin not in shown:
                 onboard = target.board.onboard.get(pin)
                 what = onboard.title if onboard is not None else "see the board's pinout"
-                result.append(f"{name} {signal}: {pin_title(target, pin)}, {what}")
+                result.append(f"{name} {signal}: {target.board.pin_title(pin)}, {what}")
     return result
 
 
-def pin_title(target: Target, pin: str) -> str:
-    """The name of a SoC's pin on the board: ``GP10``."""
-    prefix = target.board.prefixes[0] if target.board.prefixes and pin.isdigit() else ""
-    return prefix + pin
-
-
 def printed_names(target: Target, pin: str) -> str:
-    """The names of a SoC's pin that are printed on the board, and that differ from :func:`pin_title`: ``D6``."""
+    """The names of a SoC's pin that are printed on the board, and that differ from its title: ``D6``."""
     return " ".join(name for name, named in target.board.names.items() if named == pin)
 
 
 def wire_texts(kind: Kind, claims: Mapping[str, Assignment], target: Target) -> list[str]:
     """The pin of each signal, such as ``a GP10``, of a component with these ``claims``.  Empty if there are no pins."""
-    return [f"{signal} {pin_title(target, pin)}" for signal, pin, _ in _signals(target, kind, claims)]
+    return [f"{signal} {target.board.pin_title(pin)}" for signal, pin, _ in _signals(target, kind, claims)]
 
 
 def _places(layout: Layout, side: str) -> dict[int, Contact]:
@@ -180,7 +174,7 @@ def _contacts(picture: Picture, target: Target, layout: Layout, side: str, used:
         y = place * PITCH
         role = layout.role(contact)
         printed = printed_names(target, contact.pin) if contact.pin else ""
-        name = " ".join(filter(None, (pin_title(target, contact.pin), printed))) if contact.pin else contact.name
+        name = " ".join(filter(None, (target.board.pin_title(contact.pin), printed))) if contact.pin else contact.name
         note = layout.supplies[contact.name].title if not contact.pin else ""
         style = "contact" if role == "pin" else role
         x = sign * _INSIDE
@@ -355,7 +349,7 @@ def _notes(picture: Picture, layout: Layout, others: Sequence[str], driven: bool
 
 def _description(target: Target, layout: Layout, sides: Mapping[str, Sequence[Terminal]], others: Sequence[str]) -> str:
     wires = [
-        f"{t.component} {t.signal} to contact {t.contact.number} ({pin_title(target, t.contact.pin)})"
+        f"{t.component} {t.signal} to contact {t.contact.number} ({target.board.pin_title(t.contact.pin)})"
         for found in sides.values()
         for t in found
     ]

@@ -29,7 +29,7 @@ from epg.resolve.pins import Pins
 from epg.resolve.preferences import start_of, triggering_place, widest_places
 from epg.resolve.search import WHOLE, Demand, Place, find_places
 
-__all__ = ["Assignment", "Hardware", "allocate"]
+__all__ = ["Assignment", "Hardware", "agreement", "allocate"]
 
 NODES = 255
 """The ``instance`` of the first peripheral that a devicetree node describes.  The others count down from it."""
@@ -222,7 +222,7 @@ def _check_support(claim: Claim, resource_class: ResourceClass, target: Target, 
 
 
 def _candidate(placed: _Placed, peripheral: Peripheral) -> Candidate:
-    agreed = tuple(_agreed(placed, attribute) for attribute in peripheral.agree)
+    agreed = agreement(placed.claim, placed.resource_class, peripheral, placed.divisions)
     return Candidate(placed.claim, placed.resource_class, Demand(placed.places, agreed))
 
 
@@ -252,15 +252,21 @@ def _start(placed: _Placed, places: Mapping[ClaimKey, Place], peripheral: Periph
     return start_of(places[placed.claim.key][0], tick, peripheral, family.start_otherwise)
 
 
-def _agreed(placed: _Placed, attribute: str) -> Hashable:
-    """The value of an attribute that must be equal for all users of an instance."""
-    if attribute in ("frequency", "period") and placed.divisions:
-        return tuple(placed.divisions.items())
-    if attribute in placed.resource_class.fixed:
-        fixed = placed.resource_class.fixed[attribute]
+def agreement(
+    claim: Claim, resource_class: ResourceClass, peripheral: Peripheral, divisions: Divisions
+) -> tuple[Hashable, ...]:
+    """The values of the attributes that must be equal for all users of an instance."""
+    return tuple(_agreed(claim, resource_class, divisions, attribute) for attribute in peripheral.agree)
+
+
+def _agreed(claim: Claim, resource_class: ResourceClass, divisions: Divisions, attribute: str) -> Hashable:
+    if attribute in ("frequency", "period") and divisions:
+        return tuple(divisions.items())
+    if attribute in resource_class.fixed:
+        fixed = resource_class.fixed[attribute]
         assert isinstance(fixed, Hashable)
         return fixed
-    stated = placed.claim.attributes.get(attribute)
+    stated = claim.attributes.get(attribute)
     assert stated is None or isinstance(stated.value, Hashable)
     return None if stated is None else stated.value
 

@@ -16,7 +16,7 @@ from epg.models.model import Model
 from epg.quantity import parse_quantity, show
 from epg.resolve.allocation import Assignment, Hardware, allocate
 from epg.resolve.application import Application, Plant, ResolvedComponent, Wire
-from epg.resolve.claims import TICK, component_claims, tick_claims
+from epg.resolve.claims import TICK, Claim, component_claims, tick_claims
 from epg.resolve.counters import check_counters, longest_gap
 from epg.resolve.other_code import clock_of, compare_clocks, divided_clocks, report_own_transports, report_streams
 from epg.resolve.parameter_sizes import parameters_fit
@@ -196,6 +196,13 @@ def allocate_hardware(
         *component_claims(configuration),
         *tick_claims(configuration.target, period, configuration.control.period_span),
     ]
+    return allocate_claims(claims, configuration, period, diagnostics)
+
+
+def allocate_claims(
+    claims: Sequence[Claim], configuration: Configuration, period: Fraction | None, diagnostics: Diagnostics
+) -> Hardware | None:
+    """As :func:`allocate_hardware`, for ``claims`` instead of those of the ``.tcf``: to try other pins."""
     target, others = configuration.target, configuration.others
     report_streams(configuration, claims, diagnostics)
     report_own_transports(configuration, diagnostics)
