@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from epg.catalog.hardware import Target
+from epg.check.configuration import Configuration
 from epg.connect.body import Refused
 from epg.connect.build.consent import Question, question_about
 from epg.connect.build.run import Build
@@ -34,22 +34,24 @@ class Runs:
         if self.running:
             raise Refused("a build is running", "wait for it, or cancel it", 409)
 
-    def ask(self, job: Job, target: Target | None, agreed: str) -> dict[str, Any] | None:
+    def ask(
+        self, job: Job, configuration: Configuration | None, agreed: str, *, anyway: bool = False
+    ) -> dict[str, Any] | None:
         """The question that the user must agree to before the build; None if there is no question left.
 
         ``agreed`` is the key of a question that the user has answered with yes.
         """
-        self._question = question_about(job, target)
+        self._question = question_about(job, configuration, anyway=anyway)
         if self._question is not None and self._question.key == agreed:
             self._question.agree()
             self._question = None
         return self._question.data() if self._question is not None else None
 
-    def start(self, job: Job) -> None:
+    def start(self, job: Job, *, anyway: bool = False) -> None:
         """Configures and builds ``job``.  Raises Refused while another build runs."""
         self.check_idle()
         self._build = Build(self._changed)
-        self._build.start(job)
+        self._build.start(job, anyway=anyway)
 
     def cancel(self) -> None:
         self._build.cancel()

@@ -18,6 +18,7 @@ from typing import Any
 
 import epg
 from epg.connect.body import Body, Refused, bodies, boolean, ends, keys, names, text, value
+from epg.connect.build.plan import make_plan
 from epg.connect.configurations import Configurations
 from epg.connect.creation import create
 from epg.connect.draft import RemoveValue, SetEnds, SetValue
@@ -149,13 +150,20 @@ class Session:
         folder = (job.build_dir or job.source_dir if job is not None else None) or Path()
         return excerpt(self.state(), folder, editor.draft.drafts() if editor is not None else {}, file, line)
 
-    def build_question(self) -> dict[str, Any] | None:
+    def missing_tools(self) -> tuple[list[dict[str, Any]], bool]:
+        """Messages about tools that a build needs and that are missing; True if a build can be tried without them."""
+        with self._changed:
+            editor = self._opened()
+            plan = make_plan(editor.job, editor.loaded.parts.configuration, run=False)
+            return [message.data() for message in plan.missing], plan.can_try
+
+    def build_question(self, *, anyway: bool = False) -> dict[str, Any] | None:
         """The question that the user must agree to before a build; None if there is none.
 
         The action "generate" with the question's key as "run" agrees to it.
         """
         with self._changed:
-            return self._ask("")
+            return self._ask("", anyway=anyway)
 
     @property
     def has_changes(self) -> bool:
@@ -273,13 +281,14 @@ class Session:
         if count:
             what = "is an error" if count == 1 else f"are {count} errors"
             raise Refused(f"there {what}: the project cannot be built", "correct the errors in the messages", 409)
-        if self._ask(text(body, "run", "")) is None:
+        anyway = boolean(body, "anyway")
+        if self._ask(text(body, "run", ""), anyway=anyway) is None:
             self._save({})
-            self.runs.start(self._opened().job)
+            self.runs.start(self._opened().job, anyway=anyway)
 
-    def _ask(self, agreed: str) -> dict[str, Any] | None:
-        configuration = self._opened().loaded.parts.configuration
-        return self.runs.ask(self._opened().job, configuration.target if configuration is not None else None, agreed)
+    def _ask(self, agreed: str, *, anyway: bool) -> dict[str, Any] | None:
+        editor = self._opened()
+        return self.runs.ask(editor.job, editor.loaded.parts.configuration, agreed, anyway=anyway)
 
     # making the state
 

@@ -31,7 +31,8 @@ class Tool:
     ``programs`` are the possible names of a program, the best first.  ``holds`` is a file by which the folder is
     recognized.  A project with one of the files ``in_project`` does not need the tool.  ``places`` are patterns of
     folders; ``cached`` is a pattern in EPG's cache.  ``tested`` is the version that EPG was tested with, ``oldest`` the
-    oldest version that EPG accepts.  ``get`` maps package managers, or ``any``, to the command that installs the tool;
+    oldest version that EPG accepts.  ``fetched`` is the address of the Git repository from which a build downloads the
+    tool if it is missing.  ``get`` maps package managers, or ``any``, to the command that installs the tool;
     ``{cache}`` in it is replaced by EPG's cache.  ``optional`` is the reason why the tool may be missing.
     ``project_version`` is "required" or "preferred" if ``epg_use_versions()`` takes a version of the tool; if it is
     "required", another version is an error.
@@ -52,6 +53,7 @@ class Tool:
     oldest: str = ""
     tested: str = ""
     project_version: str = ""
+    fetched: str = ""
     version_file: str = ""  # the file with the version of a folder; a program prints it with --version
     version_patterns: tuple[str, ...] = (_NUMBERS,)  # a regular expression for each part of the version
     get: Mapping[str, str] = field(default_factory=dict)
@@ -110,6 +112,7 @@ def _tool(data: Mapping[str, Any]) -> Tool:
         oldest=_text(data.get("oldest", "")),
         tested=_text(data.get("tested", "")),
         project_version=_text(data.get("project_version", "")),
+        fetched=_text(data.get("fetch", {}).get("git", "")),
         version_file=_text(version.get("file", "")),
         version_patterns=tuple(re.compile(pattern).pattern for pattern in patterns),
         get={_text(key): _text(command) for key, command in data["get"].items()},

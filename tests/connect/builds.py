@@ -16,10 +16,10 @@ def job_of(folder: Path) -> Job:
     return job
 
 
-def run(job: Job) -> Build:
+def run(job: Job, *, anyway: bool = False) -> Build:
     """Runs a build to its end."""
     build = Build(lambda: None)
-    build.start(job)
+    build.start(job, anyway=anyway)
     assert build.wait(600), build.lines(0)
     return build
 

@@ -16,9 +16,9 @@ from typing import Any
 import pytest
 
 from epg.catalog.catalog import load_catalog
-from epg.connect.build import run as build_module
+from epg.connect import activity as build_module
 from epg.connect.build.plan import make_plan
-from epg.connect.build.run import Build
+from epg.connect.build.run import Build, configuration_of
 from epg.connect.projects import Job
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
@@ -190,12 +190,58 @@ def test_an_sdk_that_is_missing_comes_with_the_command_that_gets_it(
     monkeypatch.setenv("EPG_CACHE", str(tmp_path / "cache"))
     monkeypatch.delenv("PICO_SDK_PATH", raising=False)
     state = run(job_of(pico)).state()
-    found, picotool, *_ = state["messages"]
-    assert found["message"] == "Raspberry Pi Pico SDK was not found."
-    assert picotool["message"].startswith("picotool was not found"), "all that is missing is said at once"
+    assert (state["state"], state["step"], state["lines"]) == ("failed", "", 0), "nothing was started"
+    assert state["seconds"] < 5 and state["can_try"]
+    (found,) = state["messages"]
+    assert found["message"] == "Raspberry Pi Pico SDK was not found"
     assert found["hint"].startswith("get it: git clone --depth 1 --branch 2.2.0 ")
     assert found["hint"].endswith(f" {tmp_path}/cache/pico-sdk-2.2.0"), "the command is whole"
+
+    state = run(job_of(pico), anyway=True).state()
+    found, picotool, *_ = state["messages"]
+    assert (state["step"], found["message"]) == ("configure", "Raspberry Pi Pico SDK was not found.")
+    assert picotool["message"].startswith("picotool was not found"), "CMake reports all that is missing at once"
+    assert found["hint"].endswith(f" {tmp_path}/cache/pico-sdk-2.2.0")
     assert found["file"].startswith(str(pico)), "a file of the project, not of EPG"
+
+
+def test_a_project_that_brings_the_sdk_is_not_stopped_once_it_is_configured(
+    pico: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    monkeypatch.setenv("EPG_CACHE", str(tmp_path / "cache"))
+    monkeypatch.delenv("PICO_SDK_PATH", raising=False)
+    job = job_of(pico)
+    configuration = configuration_of(job.request)
+    assert not make_plan(job, configuration).steps and make_plan(job, configuration, anyway=True).steps
+    (pico / "build/CMakeFiles").mkdir(parents=True)
+    (pico / "build/CMakeFiles/TargetDirectories.txt").touch()  # CMake writes it at the end of a configuration
+    assert make_plan(job, configuration).steps
+
+
+def test_a_library_that_cannot_be_downloaded_is_named_before_cmake_starts(
+    robot: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The middleware changes after the first build, on a computer without a network."""
+    edit(robot / "CMakeLists.txt", "TCF host_jiwy.tcf", "TCF host_jiwy.tcf SET communication.middleware=xrce")
+    monkeypatch.setenv("EPG_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    monkeypatch.setenv("GIT_CONFIG_COUNT", "1")
+    monkeypatch.setenv("GIT_CONFIG_KEY_0", f"url.file://{tmp_path}/nothing/.insteadOf")
+    monkeypatch.setenv("GIT_CONFIG_VALUE_0", "https://github.com/")
+    state = run(job_of(robot)).state()
+    assert (state["state"], state["step"]) == ("failed", "download"), state
+    assert [found["message"].partition(",")[0] for found in state["messages"]] == [
+        "Micro-CDR was not found",
+        "Micro XRCE-DDS client was not found",
+    ]
+    for found in state["messages"]:
+        assert "cannot be downloaded from https://github.com/eProsima/Micro" in found["message"]
+        assert found["hint"].startswith("get it: git clone --depth 1 ")
+    with (robot / "build/CMakeCache.txt").open("a") as file:
+        file.write("FETCHCONTENT_FULLY_DISCONNECTED:BOOL=ON\n")
+    state = run(job_of(robot)).state()
+    assert (state["state"], state["step"], len(state["messages"])) == ("failed", "", 2), "no download is tried"
 
 
 def test_a_compiler_that_is_missing_is_named_as_doctor_does(

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from epg.catalog.catalog import load_catalog
-from epg.catalog.hardware import Target
+from epg.check.configuration import Configuration
 from epg.connect.build.plan import make_plan
 from epg.connect.projects import Job
 from epg.diagnostics import Diagnostics
@@ -51,7 +51,7 @@ def test_a_program_of_zephyr_by_west(tmp_path: Path, monkeypatch: pytest.MonkeyP
     write_project(ProjectRequest("robot", tmp_path / "robot", "native_sim_jiwy", MODEL), Diagnostics())
     job = replace(job_of(tmp_path / "robot"), board=NATIVE)
     assert job.built_by == "west"
-    plan = make_plan(replace(job, board=""), load_target(job))
+    plan = make_plan(replace(job, board=""), load(job))
     assert plan.steps[0].command[1:] == (
         *("build", "--cmake-only", "-d", str(tmp_path / "robot/build"), "-b", "native_sim"),
         str(tmp_path / "robot"),
@@ -72,10 +72,10 @@ def test_a_program_of_zephyr_by_west(tmp_path: Path, monkeypatch: pytest.MonkeyP
     ]
 
 
-def load_target(job: Job) -> Target:
+def load(job: Job) -> Configuration:
     configuration = load_configuration(job.request, load_catalog(job.request.roots, Diagnostics()), Diagnostics())
     assert configuration is not None
-    return configuration.target
+    return configuration
 
 
 def west() -> None:

@@ -172,6 +172,16 @@ def test_ctrl_c_cancels_the_build(export: Path, tmp_path: Path) -> None:
     process.stdout.close()
 
 
+def test_missing_tools_are_shown_before_the_question(project: Path, tmp_path: Path) -> None:
+    places = {"HOME": str(tmp_path / "home"), "EPG_CACHE": str(tmp_path / "cache")}
+    environment = {name: value for name, value in os.environ.items() if name != "PICO_SDK_PATH"} | places
+    command = [sys.executable, "-m", "epg", "connect", "--terminal", str(project)]
+    done = subprocess.run(command, cwd=ROOT, input="\nn\n", capture_output=True, text=True, env=environment)
+    assert "\nerror: Raspberry Pi Pico SDK was not found [tool-missing]\nhint: get it: git clone " in done.stdout
+    assert done.stdout.endswith("build anyway? (y/n) [n]: n\n") and done.returncode == 1, done.stdout[-500:]
+    assert not (project / "build").exists()
+
+
 # ports ----------------------------------------------------------------------------------------------------------------
 
 

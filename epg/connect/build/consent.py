@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any
 
 from epg.bootstrap import cache_folder
-from epg.catalog.hardware import Target
+from epg.check.configuration import Configuration
 from epg.connect.build.plan import make_plan
 from epg.connect.projects import Job
 
@@ -56,12 +56,12 @@ class Question:
             file.write_text("".join(f"{key}\n" for key in [*_lines(file), self.key][-KEPT:]), encoding="ascii")
 
 
-def question_about(job: Job, target: Target | None) -> Question | None:
-    """The question to ask before ``job`` is built for ``target``.
+def question_about(job: Job, configuration: Configuration | None, *, anyway: bool = False) -> Question | None:
+    """The question to ask before ``job`` is built; ``anyway`` as for :func:`make_plan`.
 
     None if there is nothing to run, or the user has agreed before.  This runs no program that a build folder names.
     """
-    plan = make_plan(job, target, run=False)
+    plan = make_plan(job, configuration, run=False, anyway=anyway)
     if not plan.steps:
         return None
     programs = {step.command[0] for step in plan.steps} | {plan.build_program}

@@ -15,13 +15,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from epg.catalog.hardware import Target
+from epg.check.configuration import Configuration
 from epg.connect.build.messages import Message
-from epg.connect.build.tools import ALWAYS, find_tools, missing_tools
+from epg.connect.build.tools import ALWAYS, find_tools, lack_of
 from epg.connect.build_folders import CACHE, USUAL
 from epg.connect.projects import Job
 from epg.data import data_folder
 from epg.diagnostics import Diagnostics
 from epg.tools.find_tool import read_cmake_cache
+from epg.tools.tools import Tool
 
 NINJA = "Ninja"
 
@@ -37,8 +39,10 @@ class Command:
 
 @dataclass(frozen=True)
 class Plan:
-    """The commands of a build.  If tools are ``missing`` without which nothing can be started, there are no steps.
+    """The commands of a build.  If tools are ``missing``, there are no steps.
 
+    ``can_try`` is True if the project's own CMake files may find these tools.  ``downloads`` are libraries that the
+    build downloads.
     ``cache`` are the variables in the build folder's CMake cache.  ``build_program`` is Ninja or Make, as that cache
     names it, or the program that was found.
     """
@@ -49,16 +53,19 @@ class Plan:
     environment: Mapping[str, str]
     cache: Mapping[str, str]
     missing: tuple[Message, ...] = ()
+    can_try: bool = False
+    downloads: tuple[Tool, ...] = ()
     build_program: str = ""
 
 
-def make_plan(job: Job, target: Target | None, *, run: bool = True) -> Plan:
+def make_plan(job: Job, configuration: Configuration | None, *, run: bool = True, anyway: bool = False) -> Plan:
     """The plan for ``job``.  It builds all targets of the project, as the user's own ``cmake --build`` would do.
 
     The products are therefore the same, including files that are made after linking, such as ``.uf2``.
 
-    ``target`` is None if the configuration has an error; CMake then reports it.  Without ``run``, no program that the
-    build folder names is started, not even to ask for its version.
+    ``configuration`` is None if it has an error; CMake then reports it.  Without ``run``, no program that the build
+    folder names is started, not even to ask for its version.  With ``anyway``, there are steps even if tools are
+    missing that the project's own CMake files may find.
     """
     source = Path(os.path.abspath(job.source_dir or job.request.beside))
     build = Path(os.path.abspath(job.build_dir or source / USUAL))
@@ -67,9 +74,10 @@ def make_plan(job: Job, target: Target | None, *, run: bool = True) -> Plan:
     west = job.built_by == "west"
     names = (*ALWAYS, *(["west", "zephyr"] if west and not cache else []))
     findings = find_tools(names, job.request.roots, cache, run=run)
-    lacking = tuple(missing_tools(findings, job.request.roots, cache).values())
-    if lacking:
-        return Plan(source, build, (), {}, cache, lacking)
+    lack = lack_of(job, configuration, findings, build, cache, run=run)
+    if lack.certain or (lack.likely and not anyway):
+        return Plan(source, build, (), {}, cache, (*lack.certain, *lack.likely), can_try=not lack.certain)
+    target = configuration.target if configuration is not None else None
     programs = {finding.tool.name: str(finding.path) for finding in findings}
     if cache:
         home = cache.get("CMAKE_HOME_DIRECTORY", "") if west else ""  # with sysbuild: its folder, not the application's
@@ -82,7 +90,7 @@ def make_plan(job: Job, target: Target | None, *, run: bool = True) -> Plan:
     steps = (configure, Command("build", build_command, source))
     environment = _environment(os.environ, cache, west=west)
     build_program = cache.get("CMAKE_MAKE_PROGRAM") or programs["build_program"]
-    return Plan(source, build, steps, environment, cache, build_program=build_program)
+    return Plan(source, build, steps, environment, cache, downloads=lack.downloads, build_program=build_program)
 
 
 def _first(job: Job, source: Path, build: Path, programs: Mapping[str, str]) -> tuple[str, ...]:

@@ -7,21 +7,81 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from epg.bootstrap import cache_folder
 from epg.catalog.catalog import load_catalog
 from epg.check.communication import tools_for
+from epg.check.configuration import Configuration
 from epg.connect.build.messages import Message
-from epg.connect.projects import find_jobs
+from epg.connect.projects import Job, find_jobs
 from epg.diagnostics import Diagnostics
 from epg.project import load_configuration
 from epg.tools.find_tool import Finding, Surroundings, find_tool
 from epg.tools.remedy import command_for, problem_of
-from epg.tools.tools import load_tools
+from epg.tools.tools import Tool, load_tools
 
 ALWAYS = ("cmake", "build_program")
 """The tools that every build needs."""
+_GENERATED = "CMakeFiles/TargetDirectories.txt"
+"""A file that CMake writes when a build folder is configured completely."""
+
+
+@dataclass(frozen=True)
+class Lack:
+    """The tools that a build of a target needs and that this computer does not have.
+
+    ``certain`` are the messages about tools without which nothing can be started.  ``likely`` are those about tools
+    that the project's own CMake files may still find.  ``downloads`` are libraries that the build downloads.
+    """
+
+    certain: tuple[Message, ...] = ()
+    likely: tuple[Message, ...] = ()
+    downloads: tuple[Tool, ...] = ()
+
+
+def lack_of(
+    job: Job,
+    configuration: Configuration | None,
+    findings: Sequence[Finding],
+    build: Path,
+    cache: Mapping[str, str],
+    *,
+    run: bool,
+) -> Lack:
+    """The tools that are missing for a build of ``job`` in the folder ``build``.
+
+    ``findings`` are the tools that start the build.  If the folder was configured before, CMake has found the tools of
+    the target; only those of its middlewares are searched then, because the middleware may have changed.
+    """
+    roots = job.request.roots
+    certain = tuple(missing_tools(findings, roots, cache).values())
+    if configuration is None:
+        return Lack(certain)
+    names = tools_for(configuration.target, configuration.communication)
+    if (build / _GENERATED).is_file():
+        names = {name for used in configuration.communication.middlewares for name in used.needs}
+    source = job.source_dir or job.request.beside
+    known = {finding.tool.name for finding in findings}
+    others = find_tools(sorted(names - known), roots, cache, run=run)
+    others = [each for each in others if not any((source / file).is_file() for file in each.tool.in_project)]
+    online = cache.get("FETCHCONTENT_FULLY_DISCONNECTED", "").upper() not in ("ON", "TRUE", "YES", "Y", "1")
+    (git,) = find_tools(["git"], roots, cache, run=run)
+    downloads = tuple(
+        each.tool for each in others if each.status == "missing" and each.tool.fetched and online and git.path
+    )
+    absent = [each for each in others if each.status != "found" and each.tool not in downloads]
+    if any("git clone" in each.tool.get.get("any", "") for each in absent):
+        absent = [git, *absent]  # the commands below need it
+    return Lack(certain, tuple(missing_tools(absent, roots, cache).values()), downloads)
+
+
+def download_problem(tool: Tool, said: str, roots: Sequence[Path], cache: Mapping[str, str]) -> Message:
+    """The message about a library that is missing and cannot be downloaded.  Git has ``said`` the reason."""
+    command = command_for(tool, Surroundings.here(cache_folder(), cache), load_tools(roots, Diagnostics()))
+    message = f"{tool.title} was not found, and cannot be downloaded from {tool.fetched}: {said}"
+    return Message("error", message, hint=f"get it: {command}", id="tool-missing")
 
 
 def find_tools(

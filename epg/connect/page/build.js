@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The build after "Generate": its progress, messages, products and log.
 
+import { copyButton } from "./copy.js";
 import { openDialog } from "./dialog.js";
 import { h, plural } from "./dom.js";
 import { icon } from "./icons.js";
@@ -12,11 +13,14 @@ let log = []; // the fetched lines
 let fetching = false;
 let since = null; // {seconds, at}: the build's age in the last state, and the time when that state arrived, in ms
 let last = "idle"; // the last state of the build
+let anyway = false; // true if the user wants to build although tools are missing
 
-export async function generate() {
+export async function generate(_event, although = false) {
   log = [];
+  anyway = although;
   openTab(current().diagnostics.some(isError) ? "problems" : "build");
-  if ((await attempt("generate")) && current().build.ask) openDialog("run", "Run these commands?", question);
+  if ((await attempt("generate", { anyway })) && current().build.ask)
+    openDialog("run", "Run these commands?", question);
 }
 
 // The question before the first build in a folder, with the commands that will run. Returns null, which closes the
@@ -35,7 +39,7 @@ function question() {
     ),
     h(
       "button",
-      { key: "run", type: "button", class: "primary", onclick: () => attempt("generate", { run: ask.key }) },
+      { key: "run", type: "button", class: "primary", onclick: () => attempt("generate", { run: ask.key, anyway }) },
       "Run",
     ),
   ];
@@ -85,7 +89,7 @@ function outcome(state) {
   const errors = build.messages.filter(isError).length;
   return {
     idle: "Nothing has been generated yet.",
-    running: build.step === "configure" ? "Configuring" : "Building",
+    running: { download: "Asking for a download", configure: "Configuring" }[build.step] || "Building",
     done: build.products.length ? "Done. The firmware is ready." : "Done.",
     failed: errors ? `Failed, with ${plural(errors, "error")}.` : "Failed.",
     cancelled: "Cancelled.",
@@ -103,8 +107,20 @@ export function buildPanel(state) {
     build.products.length && h("ul.products", { key: "products" }, build.products.map(product)),
     build.messages.length &&
       h("ul.problem-list", { key: "messages", "aria-label": "Messages of the build" }, build.messages.map(problem)),
+    build.can_try && tryAnyway(),
     logPart(build),
   ];
+}
+
+// After messages about missing tools, which EPG searches before it starts CMake.
+function tryAnyway() {
+  return h(
+    "p.try-anyway",
+    { key: "anyway" },
+    "Install these, and press Generate again. ",
+    h("button", { onclick: (event) => generate(event, true) }, "Build anyway"),
+    h("span.hint", "if the CMake files of your project find them in other places."),
+  );
 }
 
 /** @param {State} state */
@@ -148,22 +164,7 @@ function progress(build) {
 
 /** @param {Build["products"][number]} made */
 function product({ path, what }) {
-  return h(
-    "li",
-    h("p", what),
-    h(
-      "p.product-path",
-      h("code", path),
-      h("button", { onclick: (event) => copy(path, event.target), "aria-label": `Copy ${path}` }, "Copy path"),
-    ),
-  );
-}
-
-async function copy(text, button) {
-  await navigator.clipboard.writeText(text);
-  say("Copied");
-  button.textContent = "Copied";
-  setTimeout(() => (button.textContent = "Copy path"), 1500);
+  return h("li", h("p", what), h("p.product-path", h("code", path), copyButton("Copy path", path)));
 }
 
 /** @param {Build} build */

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Messages, at their port or component and as a list. Their text is the same as on the command line.
 
+import { copyButton } from "./copy.js";
 import { h, id, plural } from "./dom.js";
 import { icon } from "./icons.js";
 import { current } from "./server.js";
@@ -67,6 +68,7 @@ export function shortFile(file) {
 export function problem(message) {
   const full = placeText(message.file, message.line, message.column);
   const place = placeText(shortFile(message.file), message.line, message.column);
+  const [, command] = /^get it: (?!install it)(.+)$/.exec(message.hint) || [];
   return h(
     "li",
     { class: message.severity },
@@ -89,6 +91,7 @@ export function problem(message) {
         { onclick: () => showSource(message), "aria-label": `Show ${place}`, title: full },
         placeText(message.file.split(/[\\/]/).pop(), message.line),
       ),
+    command && copyButton("Copy command", command),
   );
 }
 

@@ -170,6 +170,8 @@ interface Build {
   seconds: number;
   messages: Message[];
   products: { path: string; what: string }[];
+  /** True if nothing was started because tools are missing that the project's CMake files may still find. */
+  can_try: boolean;
   /** The number of lines of the log. */
   lines: number;
   /** The question before the first build in a folder. */

@@ -3,33 +3,47 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from epg.connect.session import Session, State
 from epg.connect.terminal.console import Console
 from epg.connect.terminal.message import say_message
 
 LOOK = 1.0
 """Seconds between two updates of the progress of a build without output."""
+_OTHER_PLACES = "install these, or build anyway if the CMake files of the project find them in other places"
 
 
-def ask_to_build(session: Session, console: Console) -> str | None:
+def ask_to_build(session: Session, console: Console) -> dict[str, Any] | None:
     """Asks for consent to a build, and shows its commands before the first build of a folder.
 
-    Returns the key of the user's consent, "" if no key is needed, or None if the user does not agree.
+    If tools are missing, they are shown first.  Returns the body of the action "generate", or None if the user does not
+    agree.
     """
-    ask = session.build_question()
+    missing, can_try = session.missing_tools()
+    for message in missing:
+        say_message(message, session, console)
+    if missing:
+        console.say("the project cannot be built without these tools" if not can_try else _OTHER_PLACES)
+        if not can_try or not console.agree("build anyway?", "n"):
+            return None
+    ask = session.build_question(anyway=bool(missing))
     if ask is not None:
         console.say(f"the build runs these commands in {ask['folder']}:")
         for command in ask["commands"]:
             console.say(f"  {command}")
         console.say(f"they start {', '.join(ask['programs'])}, and all programs that the project's CMake files start")
-    if not console.agree("build?"):
+    if (not missing or ask is not None) and not console.agree("build?"):
         return None
-    return ask["key"] if ask is not None else ""
+    return {"run": ask["key"] if ask is not None else "", "anyway": bool(missing)}
 
 
-def build(session: Session, console: Console, agreed: str) -> bool:
-    """Saves, configures and builds.  Ctrl-C cancels the build.  Returns True if it succeeded.  Raises Refused."""
-    state = session.act("generate", {"run": agreed})
+def build(session: Session, console: Console, agreed: dict[str, Any]) -> bool:
+    """Saves, configures and builds.  Ctrl-C cancels the build.  Returns True if it succeeded.  Raises Refused.
+
+    ``agreed`` is the answer of :func:`ask_to_build`.
+    """
+    state = session.act("generate", agreed)
     said = ""
     while state["build"]["state"] == "running":
         try:

@@ -124,7 +124,7 @@ class _Dialog:
             return 1
         agreed = ask_to_build(self._talk.session, self._console)
         if agreed is None:
-            return 0
+            return 0 if not self._talk.session.missing_tools()[0] else 1
         try:
             return 0 if build(self._talk.session, self._console, agreed) else 1
         except Refused as problem:

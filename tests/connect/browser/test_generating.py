@@ -7,8 +7,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import pytest
+
+from epg.diagnostics import Diagnostics
+from epg.new_project import ProjectRequest, write_project
+
 from .acts import field, until
 from .conftest import Project
+from .served import ROOT, Served
 
 Open = Callable[..., Any]
 PATIENT = 60_000  # milliseconds for a build on a computer with high load
@@ -76,3 +82,28 @@ def test_generates_shows_errors_and_cancels(jiwy: Project, open_page: Open) -> N
     page.get_by_role("button", name="Cancel", exact=True).click()
     page.locator(".outcome.cancelled").wait_for(timeout=PATIENT)
     source.write_text(original, encoding="utf-8")
+
+
+def test_missing_tools_come_with_their_commands_at_once(
+    open_page: Open, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    monkeypatch.setenv("EPG_CACHE", str(tmp_path / "cache"))
+    monkeypatch.delenv("PICO_SDK_PATH", raising=False)
+    folder = tmp_path / "robot"
+    write_project(
+        ProjectRequest("robot", folder, "rpi_pico_freertos_jiwy", ROOT / "examples/jiwy/model"), Diagnostics()
+    )
+    with Served(folder) as epg:
+        page = open_page(epg.address, permissions=["clipboard-read", "clipboard-write"])
+        page.get_by_role("button", name="Generate", exact=True).click()
+        page.locator(".outcome.failed").wait_for()
+        panel = page.get_by_role("tabpanel")
+        for name in ("FreeRTOS kernel", "Raspberry Pi Pico SDK"):
+            panel.get_by_text(f"{name} was not found").wait_for()
+        assert page.get_by_role("dialog").count() == 0 and not (folder / "build").exists()
+        panel.locator("li", has_text="Pico SDK").get_by_role("button", name="Copy command").click()
+        copied = page.evaluate("navigator.clipboard.readText()")
+        assert copied.startswith("git clone ") and copied.endswith(f"{tmp_path}/cache/pico-sdk-2.2.0")
+        panel.get_by_role("button", name="Build anyway").click()
+        page.get_by_role("dialog", name="Run these commands?").wait_for()
