@@ -129,6 +129,7 @@ class Kind:
     """A kind of component.  ``headers`` and ``sources`` are files in ``folder``."""
 
     name: str
+    group: str  # "motion", "input", "output", "communication", "safety", or empty
     summary: str
     communication: str | None  # "subscribe", "publish", "echo" or None
     transport: bool  # True if ``communication: {transport: ...}`` can name components of this kind
@@ -221,6 +222,7 @@ def make_kind(node: YamlNode, folder: Path) -> Kind:
     with_others = (relation["only_with"] for relation in listed if "only_with" in relation)
     return Kind(
         name=text_of(node, "kind"),
+        group=text_of(node, "group"),
         summary=text_of(node, "summary"),
         communication=text_of(node, "communication") or None,
         transport=flag_of(node, "transport"),

@@ -117,7 +117,7 @@ def check_configuration(
     target = catalog.target(str(target_node.value), target_node.span, diagnostics)
     if target is not None:
         target = _with_clocks(target, root, diagnostics)
-    components = _components(root, target, catalog, diagnostics, pins_required)
+    components = check_components(root, target, catalog, diagnostics, pins_required)
     communication = check_communication(
         root, target, {c.name: c.kind.transport for c in components.values()}, catalog, diagnostics
     )
@@ -164,7 +164,7 @@ def _with_clocks(target: Target, root: YamlNode, diagnostics: Diagnostics) -> Ta
     return replace(target, clocks=with_frequencies(target.soc.clocks, {**target.board_clocks, **stated}))
 
 
-def _components(
+def check_components(
     root: YamlNode, target: Target | None, catalog: Catalog, diagnostics: Diagnostics, pins_required: bool
 ) -> dict[str, Component]:
     """The components without mistakes, by name.  Reports the mistakes of the others."""

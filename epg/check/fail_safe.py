@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from epg.catalog.kind import Kind
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.schema import extended_from
 from epg.source import YamlNode
@@ -25,12 +26,7 @@ def check_fail_safe(
     ``components`` are the components of ``section`` that have no mistakes.
     """
     name = str(node.value)
-    able = [
-        name
-        for name, component in components.items()
-        if not component.kind.communication  # A topic is not an electrical input.
-        and any(port.direction == "source" and port.type == "boolean" for port in component.kind.ports)
-    ]
+    able = [name for name, component in components.items() if can_disable(component.kind)]
     if name in able:
         _check_open_wire(name, components[name], diagnostics)
     elif name in components:
@@ -39,6 +35,11 @@ def check_fail_safe(
     elif name not in section:  # Else the component has mistakes, which are reported already.
         hint = did_you_mean(name, able, "digital inputs")
         diagnostics.error("unknown-component", node.span, f"there is no component '{name}'", hint=hint)
+
+
+def can_disable(kind: Kind) -> bool:
+    """True if a component of ``kind`` can be the fail-safe input.  A topic is not an electrical input."""
+    return not kind.communication and any(port.direction == "source" and port.type == "boolean" for port in kind.ports)
 
 
 def _check_open_wire(name: str, component: Component, diagnostics: Diagnostics) -> None:

@@ -38,12 +38,17 @@ def used_components(
     return MappingProxyType(result)
 
 
+def possible_references(use: KindUse, kinds: Mapping[str, Kind | None]) -> list[str]:
+    """The references to components of ``kinds`` that ``use`` allows, in the short form if there is one."""
+    return [reference for name, kind in kinds.items() if kind for reference in _references(use, name, kind)]
+
+
 def _used(
     use: KindUse, node: YamlNode, kind: Kind, kinds: Mapping[str, Kind | None], diagnostics: Diagnostics
 ) -> Used | None:
     """The component and port that a reference names; None after reporting that ``use`` does not allow it."""
     text = str(node.value)
-    possible = [reference for name, other in kinds.items() if other for reference in _references(use, name, other)]
+    possible = possible_references(use, kinds)
     name, _, port_name = text.partition(".")
     notes = extended_from(node)
     if name not in kinds:

@@ -8,10 +8,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from epg.catalog.catalog import Catalog, load_catalog
 from epg.connect.body import Refused
 from epg.connect.configurations import Project
 from epg.connect.draft import Draft, Operation
 from epg.connect.files import Snapshot, Watch, read_snapshot, save
+from epg.connect.forms import forms_of
 from epg.connect.loaded import Models, load, tcf_path
 from epg.connect.projects import Job
 from epg.connect.unused import unused_parts
@@ -39,6 +41,7 @@ class Editor:
         self.conflict: dict[str, str] | None = None
         self._tcf_path = tcf_path(job.request) or Path(os.path.abspath(job.request.tcf))
         self._models = Models()
+        self._catalog: Catalog | None = None
         for path in (job.request.bindings, self._tcf_path):
             remove_leftovers(Path(os.path.realpath(path)))
         self.draft = self._new_draft()
@@ -87,6 +90,8 @@ class Editor:
         changed = self._watch.changed()
         if not changed:
             return False
+        if any(path.suffix == ".yaml" and path != self.job.request.bindings for path in changed):
+            self._catalog = None
         what = ", ".join(f"'{path.name}'" for path in changed[:3]) + (" and others" if changed[3:] else "")
         self._seen = bindings, tcf = self._snapshots()
         if (bindings.data, tcf.data) == (self.draft.bindings.data, self.draft.tcf.data):
@@ -100,6 +105,13 @@ class Editor:
             self._rebase(bindings, tcf, what)
         self._load()
         return True
+
+    @property
+    def catalog(self) -> Catalog:
+        """All kinds and middlewares.  They are read once, because this takes 0.1 s."""
+        if self._catalog is None:
+            self._catalog = load_catalog(self.job.request.roots, Diagnostics())
+        return self._catalog
 
     @property
     def owns_tcf(self) -> bool:
@@ -137,6 +149,7 @@ class Editor:
         return {
             "project": {"name": self.job.request.name, "folder": str(self._folder()), "files": self._files()},
             **view_of(self.loaded),
+            "forms": forms_of(self.loaded, self.catalog, owns_tcf=self.owns_tcf),
             "unused": [".".join(part) for part in self.unused_parts()],
             "draft": {
                 "changed": self.draft.changed,

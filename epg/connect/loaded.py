@@ -5,14 +5,19 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
+from epg.catalog.catalog import Catalog, Kind, Target, load_catalog
+from epg.catalog.parameter import typed_value
+from epg.check.bindings import Conversion
+from epg.check.configuration import Component, check_components
+from epg.check.merge import apply_settings, merge_chain
 from epg.connect.files import Watch
 from epg.connect.places import Places
 from epg.diagnostics import Diagnostic, Diagnostics
-from epg.documents.tcf import TcfFile, find_tcf, load_tcf_chain
+from epg.documents.tcf import TcfFile, find_tcf, load_tcf_chain, settings_node
 from epg.documents.text_file import read_text
 from epg.documents.yaml_file import parse_yaml
 from epg.edit.bindings import ends_of
@@ -23,7 +28,7 @@ from epg.project import Parts, Request, hardware_of, load_parts
 from epg.resolve.allocation import Hardware
 from epg.resolve.matching import Match, match_ports
 from epg.resolve.resolve import allocate_hardware
-from epg.source import YamlNode
+from epg.source import Span, YamlNode
 
 _MOST_WATCHED = 2000
 """The limit of files and folders watched for a model that cannot be read: a change of any of them may repair it."""
@@ -35,7 +40,8 @@ _SETTLED = 2.0
 class Loaded:
     """The parts of a request that could be loaded without an error, and the messages about all of it.
 
-    ``root`` is the YAML tree of the bindings, even if they have errors.
+    ``root`` is the YAML tree of the bindings, even if they have errors.  ``chain`` is the ``.tcf`` and the files that
+    it extends; empty if one of them cannot be read.
     """
 
     request: Request
@@ -43,6 +49,46 @@ class Loaded:
     diagnostics: tuple[Diagnostic, ...]
     root: YamlNode | None
     chain: Sequence[TcfFile]
+    catalog: Catalog
+
+    @cached_property
+    def tree(self) -> YamlNode | None:
+        """The merged values of the ``.tcf``, even if they have errors; None if a file of the chain cannot be read."""
+        if self.parts.configuration is not None:
+            return self.parts.configuration.root
+        if not self.chain:
+            return None
+        return apply_settings(merge_chain(self.chain), settings_node(self.request.settings, Diagnostics()))
+
+    @cached_property
+    def target(self) -> Target | None:
+        """Board and platform, even if other values of the ``.tcf`` have errors."""
+        if self.parts.configuration is not None:
+            return self.parts.configuration.target
+        name = self.tree.get("target") if self.tree is not None else None
+        return self.catalog.find_target(str(name.value)) if name is not None else None
+
+    @cached_property
+    def components(self) -> Mapping[str, Component]:
+        """All components of a known kind.  One with an error has its parameters' defaults, and no ports of lists."""
+        if self.parts.configuration is not None:
+            return self.parts.configuration.components
+        section = self.tree.get("components") if self.tree is not None else None
+        if self.tree is None or section is None or not section.is_mapping:
+            return {}
+        described = [(name, node) for name, node in section.items() if node.is_mapping]
+        tree = replace(
+            self.tree, value={**dict(self.tree.items()), "components": replace(section, value=dict(described))}
+        )
+        good = check_components(tree, self.target, self.catalog, Diagnostics(), pins_required=False)
+        found: dict[str, Component] = {}
+        for name, node in described:
+            kind = self.catalog.find_kind(str(node["kind"].value)) if "kind" in node else None
+            if name in good:
+                found[name] = good[name]
+            elif kind is not None:
+                found[name] = _with_error(name, kind, node, section.key_span(name))
+        return found
 
     @cached_property
     def hardware(self) -> Hardware:
@@ -58,9 +104,7 @@ class Loaded:
     @cached_property
     def matches(self) -> Mapping[str, Match]:
         """The probable component of each model port."""
-        if self.parts.model is None or self.parts.configuration is None:
-            return {}
-        return match_ports(self.parts.model, self.parts.configuration.components)
+        return match_ports(self.parts.model, self.components) if self.parts.model is not None else {}
 
     @cached_property
     def bound(self) -> tuple[str, ...]:
@@ -139,7 +183,8 @@ class Models:
 def load(request: Request, models: Models) -> Loaded:
     """Reads all files of ``request``.  The draft of a file is read instead of the file."""
     diagnostics = Diagnostics()
-    parts = load_parts(request, diagnostics, models.read)
+    catalog = load_catalog(request.roots, diagnostics)
+    parts = load_parts(request, diagnostics, models.read, catalog)
     if parts.bindings is not None:
         root: YamlNode | None = parts.bindings.root
     else:
@@ -153,7 +198,15 @@ def load(request: Request, models: Models) -> Loaded:
         drafts=request.drafts,
         wanted_by=request.caller,
     )
-    return Loaded(request, parts, tuple(diagnostics), root if root is not None and root.is_mapping else None, chain)
+    root = root if root is not None and root.is_mapping else None
+    return Loaded(request, parts, tuple(diagnostics), root, chain, catalog)
+
+
+def _with_error(name: str, kind: Kind, node: YamlNode, span: Span) -> Component:
+    """A component with mistakes, so that it is shown beside its messages."""
+    defaults = {parameter.name: typed_value(parameter, None, Diagnostics()) for parameter in kind.parameters}
+    ports = tuple(port for port in kind.ports if not port.each)
+    return Component(name, replace(kind, ports=ports), defaults, {}, Conversion(), node, span)
 
 
 def files_of_model(path: Path, model: Model | None) -> Iterator[Path]:

@@ -11,6 +11,8 @@ from epg.models.model import Model
 from epg.source import Span, YamlNode
 
 _SECTIONS = ("inputs", "outputs")
+MISSING = "missing-key"
+"""The id of messages about a missing key.  ``about`` is its path, below the component if it is a key of one."""
 
 _Key = tuple[str, int, int, str]
 """The file, line and column at which a key begins, and its name; "" for a key that names no port or component."""
@@ -26,6 +28,7 @@ class Places:
         self._bindings = bindings
         self._ports = sorted(_keys(root, _SECTIONS)) if root is not None else []
         self._components = sorted(key for file in chain for key in _keys(file.node, ("components",)))
+        self._paths = sorted((place, path) for file in chain for place, path in _paths(file.node, ()))
         ports = (*model.inputs, *model.outputs) if model is not None else ()
         spans = [port.span for port in ports]
         self._declared = {port.span: port.name for port in ports if port.span.line and spans.count(port.span) == 1}
@@ -33,7 +36,7 @@ class Places:
     def port(self, diagnostic: Diagnostic) -> str | None:
         """The model port that a message is about; None if it is not about a port."""
         span = diagnostic.span
-        section, _, name = diagnostic.about.partition(".")
+        section, _, name = diagnostic.about.partition(".") if diagnostic.id != MISSING else ("", "", "")
         if section in _SECTIONS and span.file == self._bindings:
             return name
         return self._declared.get(span) or self.port_at(span)
@@ -45,6 +48,28 @@ class Places:
     def component(self, diagnostic: Diagnostic) -> str | None:
         """The component whose lines in a ``.tcf`` contain the position of a message."""
         return _name(self._components, diagnostic.span)
+
+    def path(self, diagnostic: Diagnostic) -> list[str]:
+        """The keys of the value in a ``.tcf`` that a message is about; empty if it is about another file."""
+        span = diagnostic.span
+        before = [path for place, path in self._paths if place[0] == span.file and place <= _place(span)]
+        if not before:
+            return []
+        if diagnostic.id != MISSING or not diagnostic.about:
+            return list(before[-1])
+        return [*(before[-1][:2] if before[-1][0] == "components" else ()), *diagnostic.about.split(".")]
+
+
+def _paths(node: YamlNode, above: tuple[str, ...]) -> Iterator[tuple[tuple[str, int, int], tuple[str, ...]]]:
+    """The position of each key below ``node``, and the keys that lead to it."""
+    for key, child in node.items():
+        path = (*above, key)
+        yield _place(node.key_span(key)), path
+        yield from _paths(child, path)
+
+
+def _place(span: Span) -> tuple[str, int, int]:
+    return span.file, span.line, span.column
 
 
 def _keys(root: YamlNode, sections: Sequence[str]) -> Iterator[_Key]:

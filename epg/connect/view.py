@@ -6,11 +6,12 @@ The messages have the words, positions and order of ``epg check --json``.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
 from epg.catalog.kind import KindPort
-from epg.check.configuration import Component, Configuration
+from epg.check.configuration import Component
 from epg.check.names import absolute_topic
 from epg.connect.fitting import fits
 from epg.connect.loaded import Loaded
@@ -32,12 +33,12 @@ Data = dict[str, Any]
 
 def view_of(loaded: Loaded) -> Data:
     """The part of the state that follows from the files and the draft."""
-    model, configuration = loaded.parts.model, loaded.parts.configuration
+    model = loaded.parts.model
     wires = _wires(loaded)
     taken = {end["reference"] for ends in wires.values() for end in ends}
     return {
         "model": model_view(model) if model is not None else None,
-        "components": _components(configuration, loaded) if configuration is not None else [],
+        "components": _components(loaded),
         "wires": wires,
         "proposals": {
             name: match.proposal
@@ -82,24 +83,27 @@ def _port(port: Port) -> Data:
     return {"name": port.name, "unit": port.unit, "type": port.type, "description": port.description}
 
 
-def _components(configuration: Configuration, loaded: Loaded) -> list[Data]:
+def _components(loaded: Loaded) -> list[Data]:
     claims: dict[str, dict[str, Any]] = {}
     for (owner, claim), found in loaded.hardware.items():
         claims.setdefault(owner, {})[claim] = found
-    return [_component(c, configuration, claims.get(c.name, {})) for c in configuration.components.values()]
+    return [_component(component, loaded, claims.get(component.name, {})) for component in loaded.components.values()]
 
 
-def _component(component: Component, configuration: Configuration, claims: dict[str, Any]) -> Data:
+def _component(component: Component, loaded: Loaded, claims: dict[str, Any]) -> Data:
     kind = component.kind
     resources = dict.fromkeys(found.resource for found in claims.values())
     topic = component.parameters.get("topic") if kind.communication else None
+    configuration, target = loaded.parts.configuration, loaded.target
     return {
         "name": component.name,
         "kind": kind.name,
         "summary": kind.summary,
-        "where": wire_texts(kind, claims, configuration.target),
+        "where": wire_texts(kind, claims, target) if target is not None else [],
         "peripheral": ", ".join(name for name in resources if not name.startswith("pin ")),
-        "topic": absolute_topic(str(topic), configuration.namespace, configuration.node) if topic else "",
+        "topic": absolute_topic(str(topic), configuration.namespace, configuration.node)
+        if topic and configuration is not None
+        else "",
         "ports": [
             {
                 "name": port.name,
@@ -131,7 +135,7 @@ def _wire(end: End, name: str, direction: str, loaded: Loaded) -> Data:
 
     The units are those on both sides of the conversion in the bindings; empty if they are not known.
     """
-    found = _end(end.reference, direction, loaded.parts.configuration)
+    found = _end(end.reference, direction, loaded.components)
     own = _said(end)
     given = ""
     unit = wanted = ""
@@ -151,13 +155,13 @@ def _wire(end: End, name: str, direction: str, loaded: Loaded) -> Data:
 def _fitting(match: Match, loaded: Loaded) -> list[str]:
     """The candidates that agree with the port in type and unit, too."""
     direction = "source" if match.port.direction == "input" else "sink"
-    ends = {reference: _end(reference, direction, loaded.parts.configuration) for reference in match.candidates}
+    ends = {reference: _end(reference, direction, loaded.components) for reference in match.candidates}
     return [reference for reference, end in ends.items() if end is not None and fits(match.port, *end)]
 
 
-def _end(reference: str, direction: str, configuration: Configuration | None) -> tuple[Component, KindPort] | None:
+def _end(reference: str, direction: str, components: Mapping[str, Component]) -> tuple[Component, KindPort] | None:
     name, _, port_name = reference.partition(".")
-    component = configuration.components.get(name) if configuration is not None else None
+    component = components.get(name)
     if component is None:
         return None
     if not port_name:
@@ -181,7 +185,8 @@ def _units(steps: list[Step]) -> str:
 def diagnostic_view(diagnostic: Diagnostic, places: Places | None = None) -> Data:
     """A message as in the command line's JSON, with the port and the component that it is about.
 
-    ``ports`` are that port and the others that it names: the two outputs that drive one component port.
+    ``ports`` are that port and the others that it names: the two outputs that drive one component port.  ``path`` are
+    the keys of the value in a ``.tcf`` that it is about.
     """
     port = places.port(diagnostic) if places is not None else None
     others = [places.port_at(note.span) for note in diagnostic.notes] if places is not None else []
@@ -190,6 +195,7 @@ def diagnostic_view(diagnostic: Diagnostic, places: Places | None = None) -> Dat
         "port": port,
         "ports": list(dict.fromkeys(name for name in (port, *others) if name is not None)),
         "component": places.component(diagnostic) if places is not None else None,
+        "path": places.path(diagnostic) if places is not None else [],
     }
 
 

@@ -121,7 +121,9 @@ def _report(error: Any, root: YamlNode, diagnostics: Diagnostics) -> None:
         span = _owner_span(root, path)
         for key in missing:
             hint = _key_hint(key, schema)
-            diagnostics.error("missing-key", span, f"'{key}' is missing{_where(path)}", hint=hint, notes=notes)
+            about = ".".join(map(str, (*path, key)))
+            message = f"'{key}' is missing{_where(path)}"
+            diagnostics.error("missing-key", span, message, hint=hint, notes=notes, about=about)
         return
     id, message, hint = _explain(keyword, error, schema)
     diagnostics.error(id, node.span, message, hint=hint, notes=notes)

@@ -116,7 +116,7 @@ def test_messages_are_those_of_the_command_line(name: str, files: Path, capsys: 
     arguments = ["--tcf", str(files / "t.tcf"), "--model", str(files / "model"), "--bindings", str(files / "b.yaml")]
     main(["check", "--json", *arguments])
     said = json.loads(capsys.readouterr().out)["diagnostics"]
-    added = ("port", "ports", "component")
+    added = ("port", "ports", "component", "path")
     assert [{key: value for key, value in each.items() if key not in added} for each in shown] == said
     found = {(each["id"], each["port"], each["component"]) for each in shown}
     assert about <= found if about else not found

@@ -19,6 +19,7 @@ interface State extends StartState {
   units: Record<string, [string, number]>;
   /** The pictures of the target: false for a picture that errors prevent. A board without a layout has no "wiring". */
   pictures: Record<string, boolean>;
+  forms: Forms;
   /** The parts of the robot that no port uses. */
   unused: string[];
   draft: Draft;
@@ -125,12 +126,70 @@ interface Message extends Place {
   /** That port, and others that the message names. */
   ports?: string[];
   component?: string | null;
+  /** The keys of the value in a .tcf that the message is about. */
+  path?: string[];
 }
 
 interface Place {
   file: string;
   line: number;
   column: number;
+}
+
+/** The forms of the target: epg/connect/forms.py makes them. */
+interface Forms {
+  kinds: Record<string, KindForm>;
+  settings: { title: string; fields: Field[] }[];
+  /** The values in the files, by their keys: "components.pwm_pan.frequency". */
+  values: Record<string, Value>;
+  /** The inherited components that the project's own .tcf removes. */
+  left_out: string[];
+}
+
+interface KindForm {
+  group: string;
+  summary: string;
+  /** Their paths are those below a component. */
+  fields: Field[];
+  /** Sets of fields of which a component must set one. */
+  one_of: string[][];
+  /** The reason why the target cannot have such a component; empty if it can. */
+  unusable: string;
+}
+
+interface Field {
+  path: string[];
+  name: string;
+  type: "quantity" | "ratio" | "number" | "integer" | "boolean" | "text" | "choice" | "reference" | "pin" | "yaml" | "group";
+  description: string;
+  required?: boolean;
+  default?: string;
+  units?: string[];
+  choices?: string[];
+  limits?: string;
+  example?: string;
+  /** The title of the part of the form in which the field is, if it is not the first one. */
+  section?: string;
+  /** The fields of a group. */
+  fields?: Field[];
+}
+
+/** A value as it is written, and its place. */
+interface Value extends Origin {
+  text: string;
+  /** True if the project's own file has it. */
+  own?: boolean;
+  /** True if the project's own file removes an inherited value. */
+  removed?: boolean;
+  /** The value without the project's own file, if another file has one. */
+  back?: Origin & { text: string };
+}
+
+interface Origin {
+  /** The project's own file, another one of the user, one of EPG, or an argument in CMake. */
+  how: "own" | "file" | "epg" | "call";
+  file: string;
+  line: number;
 }
 
 interface HardwareRow {
