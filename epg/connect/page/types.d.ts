@@ -160,7 +160,18 @@ interface KindForm {
 interface Field {
   path: string[];
   name: string;
-  type: "quantity" | "ratio" | "number" | "integer" | "boolean" | "text" | "choice" | "reference" | "pin" | "yaml" | "group";
+  type:
+    | "quantity"
+    | "ratio"
+    | "number"
+    | "integer"
+    | "boolean"
+    | "text"
+    | "choice"
+    | "reference"
+    | "pin"
+    | "yaml"
+    | "group";
   description: string;
   required?: boolean;
   default?: string;
