@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The sources of the page: nothing in them is left over."""
+"""The sources of the page: a script uses each export and each class of the style sheet."""
 
 from __future__ import annotations
 

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Firefox without a window, driven by lines of JSON: [act, ...arguments] on standard input. Each line is answered by a
+// line {"value"} or {"error"} on standard output. Puppeteer drives Firefox over WebDriver BiDi.
+//
+//   node firefox.mjs /usr/bin/firefox-esr /path/to/puppeteer-core
+
+import { createInterface } from "node:readline";
+import { pathToFileURL } from "node:url";
+
+const [program, puppeteerFolder] = process.argv.slice(2);
+const entry = "lib/esm/puppeteer/puppeteer-core.js";
+const { default: puppeteer } = await import(pathToFileURL(`${puppeteerFolder}/${entry}`));
+const browser = await puppeteer.launch({ browser: "firefox", executablePath: program, headless: true });
+const page = await browser.newPage();
+const complaints = []; // errors and warnings that the page has caused
+
+page.on("console", (message) => {
+  if (["error", "warn"].includes(message.type())) complaints.push(message.text());
+});
+page.on("pageerror", (error) => complaints.push(String(error)));
+await page.setViewport({ width: 1280, height: 800 });
+
+async function middle(selector) {
+  const element = await page.waitForSelector(selector, { timeout: 5000 });
+  await element.evaluate((each) => each.scrollIntoView({ block: "nearest" }));
+  const box = await element.boundingBox();
+  return [box.x + box.width / 2, box.y + box.height / 2];
+}
+
+const acts = {
+  open: async (address) => void (await page.goto(address)),
+  evaluate: (expression) => page.evaluate(expression),
+  click: async (selector) => page.mouse.click(...(await middle(selector))),
+  drag: async (from, to) => {
+    const start = await middle(from);
+    await page.mouse.move(...start);
+    await page.mouse.down();
+    await page.mouse.move(start[0] + 30, start[1] + 10, { steps: 3 });
+    await page.mouse.move(...(await middle(to)), { steps: 5 });
+    await page.mouse.up();
+  },
+  focus: (selector) => page.focus(selector),
+  press: (key) => page.keyboard.press(key),
+  type: (text) => page.keyboard.type(text),
+  screenshot: async (path) => void (await page.screenshot({ path })),
+  follow: async (link, expression) => {
+    const created = new Promise((resolve) => browser.once("targetcreated", resolve));
+    await acts.click(link);
+    const tab = await (await created).page();
+    const end = Date.now() + 5000;
+    let value = null;
+    while (!value && Date.now() < end) value = await tab.evaluate(expression).catch(() => null);
+    await tab.close();
+    return value;
+  },
+  complaints: () => complaints.splice(0),
+};
+
+for await (const line of createInterface({ input: process.stdin })) {
+  const [act, ...rest] = JSON.parse(line);
+  let answer;
+  try {
+    answer = { value: (await acts[act](...rest)) ?? null };
+  } catch (error) {
+    answer = { error: String(error) };
+  }
+  process.stdout.write(`${JSON.stringify(answer)}\n`);
+}
+await browser.close();

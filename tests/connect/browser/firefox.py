@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Firefox without a window.  Puppeteer drives it over WebDriver BiDi; ``firefox.mjs`` is the program that does so.
+
+>>> # with Firefox() as firefox: firefox.open(epg.address); firefox.click("#tab-changes")
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import time
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from tests.emulator.toolchain import Missing, node, npm_package
+
+from .axe import HERE
+
+NAMES = ("firefox-esr", "firefox")
+
+
+class Firefox:
+    """One page of Firefox.  Elements are named by selectors of CSS, or by Puppeteer's ``::-p-aria(NAME)``."""
+
+    def __init__(self) -> None:
+        """Raises Missing."""
+        program = next(filter(None, map(shutil.which, NAMES)), None)
+        if program is None:
+            raise Missing("Firefox is not installed: apt install firefox-esr")
+        command = [node(), str(HERE / "firefox.mjs"), program, str(npm_package(HERE, "puppeteer-core"))]
+        self._process = subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, encoding="utf-8"
+        )
+
+    def __enter__(self) -> Firefox:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        assert self._process.stdin is not None and self._process.stdout is not None
+        self._process.stdin.close()  # then the program closes Firefox
+        self._process.wait(20)
+        self._process.stdout.close()
+
+    def _do(self, act: str, *arguments: object) -> Any:
+        assert self._process.stdin is not None and self._process.stdout is not None
+        self._process.stdin.write(json.dumps([act, *arguments]) + "\n")
+        self._process.stdin.flush()
+        answer = json.loads(self._process.stdout.readline())
+        assert "error" not in answer, f"{act} {arguments}: {answer['error']}"
+        return answer["value"]
+
+    def open(self, address: str) -> None:
+        self._do("open", address)
+        self.until("document.querySelector('#header .brand')")
+
+    def evaluate(self, expression: str) -> Any:
+        return self._do("evaluate", expression)
+
+    def click(self, selector: str) -> None:
+        self._do("click", selector)
+
+    def drag(self, start: str, end: str) -> None:
+        self._do("drag", start, end)
+
+    def focus(self, selector: str) -> None:
+        self._do("focus", selector)
+
+    def press(self, *keys: str) -> None:
+        for key in keys:
+            self._do("press", key)
+
+    def type(self, text: str) -> None:
+        self._do("type", text)
+
+    def screenshot(self, file: Path) -> None:
+        self._do("screenshot", str(file))
+
+    def follow(self, link: str, expression: str) -> Any:
+        """The first value of ``expression`` that is true, in the tab that ``link`` opens; the tab is closed."""
+        return self._do("follow", link, expression)
+
+    def complaints(self) -> list[str]:
+        """The errors and warnings since the last call."""
+        found: list[str] = self._do("complaints")
+        return found
+
+    def until(self, expression: str, seconds: float = 10) -> None:
+        end = time.monotonic() + seconds
+        while not self.evaluate(f"Boolean({expression})"):
+            assert time.monotonic() < end, expression
+            time.sleep(0.05)
