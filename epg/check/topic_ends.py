@@ -78,7 +78,7 @@ def bind_ends(
     """
     inputs, outputs = dict(bindings.inputs), dict(bindings.outputs)
     for end in ends:
-        made = _is_made_for(end, configuration.components[end.component])
+        made = is_made_for(end, configuration.components[end.component])
         if not made or not _is_port(end, model, configuration, diagnostics):
             continue
         bound = _bound(end, bindings)
@@ -136,14 +136,14 @@ def _is_port(end: TopicEnd, model: Model, configuration: Configuration, diagnost
     topics = [
         c.name
         for c in configuration.components.values()
-        if c.kind.communication == _direction(end) and not _is_made_for(end, c)
+        if c.kind.communication == _direction(end) and not is_made_for(end, c)
     ]
     hint = did_you_mean(end.name, {*topics, *(port.name for port in ports)})
     diagnostics.error("unknown-port", end.span, message, hint=hint)
     return False
 
 
-def _is_made_for(end: TopicEnd, component: Component) -> bool:
+def is_made_for(end: TopicEnd, component: Component) -> bool:
     """True if the ``.tcf`` does not have this component."""
     return component.node["kind"].span == end.span
 

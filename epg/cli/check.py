@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from epg.cli.arguments import add_target_arguments, request_of
-from epg.cli.system import SYSTEM_FILES, is_system, read_system, system_data, system_text
+from epg.cli.system import is_system, read_system, system_data, system_text
 from epg.diagnostics import Diagnostics
+from epg.system import SYSTEM_FILES
 
 if TYPE_CHECKING:
     from epg.resolve.allocation import Hardware

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from epg.cli.arguments import add_target_arguments, request_of, user_roots
 from epg.cli.report import format_diagnostics, to_json
+from epg.cli.system import is_system
 from epg.diagnostics import Diagnostics
 
 if TYPE_CHECKING:
@@ -23,7 +24,8 @@ _TEXT_BROWSERS = frozenset(("lynx", "w3m", "links", "elinks", "links2", "www-bro
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    folder = "folder of a project (a CMakeLists.txt with epg_add_target) or of a model; default: the current folder"
+    folder = "folder of a project (a CMakeLists.txt with epg_add_target), of a system or of a model, or the file of a "
+    folder += "system (*.system.yaml); default: the current folder"
     parser.add_argument("folder", nargs="?", type=Path, metavar="FOLDER", help=folder)
     add_target_arguments(parser, required=False)
     parser.add_argument("--name", help="name of the target; if FOLDER has several, the one to show first")
@@ -49,15 +51,23 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         sys.stderr.write("epg connect: --port must be from 0 to 65535\n")
         return 2
     folder = Path(os.path.abspath(options.folder or "."))
-    jobs = [_job(options)] if all(given) else _jobs(folder, options.name, diagnostics)
+    system = folder if is_system(folder) else None
+    jobs = [_job(options)] if all(given) else []
+    if not jobs and system is None:
+        jobs = _jobs(folder, options.name, diagnostics)
+        diagnostics.stop_if_errors()
+        system = _system_in(folder, diagnostics) if not jobs else None
     diagnostics.stop_if_errors()
     model = None
-    if not jobs:
-        _check_model(folder, diagnostics)
-        diagnostics.stop_if_errors()
-        model = folder
     project = jobs[0].source_dir if jobs and not all(given) else None
-    session = Session(jobs, folder=project, model=model, user_roots=user_roots())
+    if system is not None:
+        project = folder if folder.is_dir() else system.parent
+        jobs = _system_jobs(system, project, options.name, diagnostics)
+    elif not jobs:
+        _check_model(folder, diagnostics)
+        model = folder
+    diagnostics.stop_if_errors()
+    session = Session(jobs, folder=project, model=model, system=system, user_roots=user_roots())
     if options.terminal:
         from epg.connect.terminal.dialog import run as run_terminal
 
@@ -124,6 +134,39 @@ def _job(options: argparse.Namespace) -> Job:
     known = next((job for job in found if job.request.name == request.name), Job(absolute))
     build = build or known.build_dir
     return replace(known, request=absolute, source_dir=source, build_dir=build, built_by=options.built_by)
+
+
+def _system_in(folder: Path, diagnostics: Diagnostics) -> Path | None:
+    """The system in ``folder``, None if there is none.  Several are reported."""
+    from epg.connect.projects import find_systems
+    from epg.source import Span
+
+    systems = find_systems(folder)
+    if len(systems) > 1:
+        names = ", ".join(os.path.relpath(path, folder) for path in systems)
+        message = "there are several systems here"
+        diagnostics.error("several-systems", Span(str(folder)), message, hint=f"name one of them: {names}")
+    return systems[0] if systems else None
+
+
+def _system_jobs(path: Path, folder: Path, name: str | None, diagnostics: Diagnostics) -> list[Job]:
+    """The target ``name`` of the system in ``path``; none without a name: the page then shows the whole system.
+
+    Mistakes are reported if nothing could be shown.
+    """
+    from epg.cli.system import target_of
+    from epg.connect.projects import system_jobs
+    from epg.source import Span
+    from epg.system.load_system import parse_system
+
+    found = Diagnostics()
+    system = parse_system(path, found)
+    if system is None:
+        diagnostics.items.extend(found)
+    if system is None or name is None:
+        return []
+    target_of(system, name, Span(str(path)), diagnostics)
+    return [job for job in system_jobs(path, folder, user_roots()) if job.request.name == name]
 
 
 def _absolute(path: Path | None) -> Path | None:

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 from epg.cli.arguments import user_roots
 from epg.cli.report import to_json
-from epg.cli.system import SYSTEM_FILES, is_system, read_system
+from epg.cli.system import is_system, read_system
 from epg.diagnostics import Diagnostics
+from epg.system import SYSTEM_FILES
 
 if TYPE_CHECKING:
     from epg.new_project import NewProject

@@ -4,22 +4,20 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from epg.cli.table import table
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.quantity import show
+from epg.system import SYSTEM_FILES
 
 if TYPE_CHECKING:
     from epg.resolve.application import Plant
     from epg.source import Span
-    from epg.system.check_system import CheckedSystem, Link, Loop
+    from epg.system.check_system import CheckedSystem, Link
     from epg.system.system import System, SystemTarget
-
-SYSTEM_FILES = ".system.yaml"
-"""The end of the names of files that describe a system."""
 
 
 def is_system(path: Path) -> bool:
@@ -68,9 +66,9 @@ def system_text(checked: CheckedSystem) -> str:
     if checked.links:
         header = ("from", "to", "message", "unit", "sent", "oldest value")
         parts.append(table(header, [_row(link) for link in checked.links]))
-    parts += [_loop(loop) for loop in checked.loops]
+    parts += [str(loop) for loop in checked.loops]
     if checked.plant is not None:
-        parts.append(_plant_text(checked.plant, checked.system.targets))
+        parts.append(_plant_text(checked, checked.plant))
     return "\n\n".join([checked.system.name, *parts])
 
 
@@ -118,18 +116,11 @@ def _plant(plant: Plant) -> dict[str, Any]:
 
 
 def _row(link: Link) -> tuple[object, ...]:
-    sent = "on change" if link.on_change else f"every {show(link.period, 'time')}"
     ends = (link.connection.sender, link.connection.receiver)
-    return (*ends, link.message, link.unit, sent, show(link.age, "time"))
+    return (*ends, link.message, link.unit, link.sent, show(link.age, "time"))
 
 
-def _plant_text(plant: Plant, targets: Iterable[str]) -> str:
+def _plant_text(checked: CheckedSystem, plant: Plant) -> str:
     """The model of the plant, its step, and the targets that are bound to it."""
-    bound = {wire.component.name.partition("/")[0] for wire in (*plant.inputs, *plant.outputs)}
-    names = ", ".join(name for name in targets if name in bound)
+    names = ", ".join(name for name in checked.system.targets if name in checked.plant_wires)
     return f"plant {plant.model.name}: step {show(plant.model.step, 'time')}, bound to {names}"
-
-
-def _loop(loop: Loop) -> str:
-    way = " -> ".join((*loop.targets, loop.targets[0]))
-    return f"loop {way}: a value is up to {show(loop.age, 'time')} old when it comes back, and the transport's time"

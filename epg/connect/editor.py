@@ -139,7 +139,7 @@ class Editor:
         model, configuration = self.loaded.parts.model, self.loaded.parts.configuration
         if model is None or configuration is None or not self.owns_tcf:
             return []
-        if not {port.name for port in (*model.inputs, *model.outputs)} <= set(self.loaded.bound):
+        if not {port.name for port in (*model.inputs, *model.outputs)} <= {*self.loaded.bound, *self.loaded.by_system}:
             return []
         return unused_parts(configuration, self.loaded.references, self.loaded.plant_references)
 

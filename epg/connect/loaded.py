@@ -14,6 +14,7 @@ from epg.catalog.parameter import typed_value
 from epg.check.bindings import Conversion
 from epg.check.configuration import Component, check_components
 from epg.check.merge import apply_settings, merge_chain
+from epg.check.topic_ends import is_made_for
 from epg.connect.files import Watch
 from epg.connect.places import Places
 from epg.diagnostics import Diagnostic, Diagnostics
@@ -114,8 +115,21 @@ class Loaded:
 
     @cached_property
     def references(self) -> frozenset[str]:
-        """The component ports at which wires end, as the bindings name them."""
-        return _references(self.root)
+        """The component ports at which wires end, as the bindings name them, and those that the system connects."""
+        system = self.request.system
+        return _references(self.root) | {end.component for end in (system.ends if system is not None else ())}
+
+    @cached_property
+    def by_system(self) -> Mapping[str, str]:
+        """The topics of the model's ports that the system connects: ports without a component of their own."""
+        system, model, configuration = self.request.system, self.parts.model, self.parts.configuration
+        if system is None or model is None or configuration is None:
+            return {}
+        ports = {port.name for port in (*model.inputs, *model.outputs)} - set(self.bound)
+        components = configuration.components
+        return {
+            end.name: end.topic for end in system.ends if end.name in ports and is_made_for(end, components[end.name])
+        }
 
     @cached_property
     def plant_references(self) -> frozenset[str]:
@@ -180,10 +194,10 @@ class Models:
         return model
 
 
-def load(request: Request, models: Models) -> Loaded:
+def load(request: Request, models: Models, catalog: Catalog | None = None) -> Loaded:
     """Reads all files of ``request``.  The draft of a file is read instead of the file."""
     diagnostics = Diagnostics()
-    catalog = load_catalog(request.roots, diagnostics)
+    catalog = catalog or load_catalog(request.roots, diagnostics)
     parts = load_parts(request, diagnostics, models.read, catalog)
     if parts.bindings is not None:
         root: YamlNode | None = parts.bindings.root

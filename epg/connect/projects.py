@@ -18,6 +18,8 @@ from epg.connect.recorded_calls import recorded_calls
 from epg.diagnostics import Diagnostics
 from epg.project import Request
 from epg.source import Span
+from epg.system import SYSTEM_FILES
+from epg.system.load_system import parse_system
 
 _ONE = ("TCF", "MODEL", "BINDINGS", "PLANT", "PLANT_BINDINGS", "IOC", "NODE", "NAMESPACE", "SYSTEM")
 _NEEDED = ("TCF", "MODEL", "BINDINGS")
@@ -31,7 +33,8 @@ class Job:
 
     ``source_dir`` is the folder of the top CMakeLists.txt.  ``build_dir`` exists, or is the one that ``preset`` or the
     user would create.  ``executables`` are the names that epg_add_executable() got; ``board`` is the argument that
-    ``west build -b`` got.
+    ``west build -b`` got.  ``simulated`` is True if the project builds the simulation of the target's system, not a
+    firmware.
     """
 
     request: Request
@@ -41,6 +44,7 @@ class Job:
     preset: str = ""
     executables: tuple[str, ...] = ()
     board: str = ""
+    simulated: bool = False
 
 
 def find_jobs(folder: Path, diagnostics: Diagnostics) -> list[Job]:
@@ -92,6 +96,48 @@ def jobs_of_model(model: Path) -> list[Job]:
         if jobs:
             return jobs
     return []
+
+
+def find_systems(folder: Path) -> list[Path]:
+    """The systems of the project in ``folder``: those of epg_add_system(), else the files of systems in the folder."""
+    folder = Path(os.path.abspath(folder))
+    calls = _system_calls(folder) if (folder / FILE).is_file() else {}
+    return list(calls) or sorted(folder.glob(f"*{SYSTEM_FILES}"))
+
+
+def system_jobs(path: Path, folder: Path, user_roots: Sequence[Path] = ()) -> list[Job]:
+    """The targets of the system in ``path``; none if it is not a system.
+
+    The project in ``folder`` builds its simulation.  Without a CMakeLists.txt there, nothing can be built.
+    """
+    path, folder = Path(os.path.abspath(path)), Path(os.path.abspath(folder))
+    system = parse_system(path, Diagnostics())
+    if system is None:
+        return []
+    call = _system_calls(folder).get(path) if (folder / FILE).is_file() else None
+    top = _top(folder) if call is not None else None
+    roots = (_user_roots(call) if call is not None else ()) or tuple(user_roots)
+    return [
+        Job(
+            system.request(target, roots),
+            source_dir=top,
+            build_dir=build_folders(top)[0].path if top is not None else None,
+            executables=(call.words[0].text or "",) if call is not None else (),
+            simulated=True,
+        )
+        for target in system.targets.values()
+    ]
+
+
+def _system_calls(folder: Path) -> dict[Path, Call]:
+    """The calls of epg_add_system() in ``folder`` and below that make a simulation, by the file of the system."""
+    found: dict[Path, Call] = {}
+    for call in LiteralCalls(_top(folder)).calls:
+        if call.name == "epg_add_system" and call.folder.is_relative_to(folder):
+            values, _ = _keywords(call.words[1:])
+            if "SYSTEM" in values and "TARGETS" not in [word.text for word in call.words]:
+                found.setdefault(_path(call.folder, values["SYSTEM"]), call)
+    return found
 
 
 def report_no_target(folder: Path, diagnostics: Diagnostics) -> None:
@@ -151,11 +197,8 @@ def _request(call: Call, unknown: list[Unknown]) -> Request | None:
             unknown.append(not_literal(word))
             return None
     values, settings = _keywords(call.words[1:])
-    if "SYSTEM" in values:
-        message = "this target is part of a system, which 'epg connect' cannot open"
-        hint = "open its own files: epg connect --tcf FILE --model FOLDER --bindings FILE"
-        unknown.append(Unknown(call.span, message, hint))
-        return None
+    if call.words and "SYSTEM" in values:
+        return _of_system(call, _path(call.folder, values["SYSTEM"]), values.get("IOC"), unknown)
     missing = [keyword for keyword in _NEEDED if keyword not in values]
     if not call.words or missing:
         lacking = f"{missing[0]} is missing" if call.words else "its name is missing"
@@ -180,6 +223,18 @@ def _request(call: Call, unknown: list[Unknown]) -> Request | None:
         caller=name.span,
         beside=here,
     )
+
+
+def _of_system(call: Call, path: Path, ioc: Word | None, unknown: list[Unknown]) -> Request | None:
+    """The request of a target that is part of the system in ``path``."""
+    system, name = parse_system(path, Diagnostics()), call.words[0].text or ""
+    if system is not None and name in system.targets:
+        project_file = _path(call.folder, ioc) if ioc is not None else None
+        return system.request(system.targets[name], _user_roots(call), project_file)
+    what = "cannot be read" if system is None else f"has no target '{name}'"
+    message = f"the system '{path.name}' of this target {what}"
+    unknown.append(Unknown(call.span, message, f"'epg check {path.name}' shows the mistakes in it"))
+    return None
 
 
 def _keywords(words: Sequence[Word]) -> tuple[Mapping[str, Word], Iterable[Word]]:

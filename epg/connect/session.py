@@ -25,11 +25,13 @@ from epg.connect.draft import RemoveValue, SetEnds, SetValue
 from epg.connect.editor import Editor
 from epg.connect.excerpt import excerpt
 from epg.connect.files import Unsavable
+from epg.connect.overview import Overview
 from epg.connect.pictures import draw
-from epg.connect.projects import Job
+from epg.connect.projects import Job, find_jobs, system_jobs
 from epg.connect.runs import Runs
 from epg.connect.start import Start
 from epg.connect.targets import Targets
+from epg.diagnostics import Diagnostics
 from epg.edit.bindings import CannotEdit, End
 
 __all__ = ["Refused", "Session", "State"]
@@ -41,7 +43,9 @@ State = dict[str, Any]
 
 
 class Session:
-    """Shows one target of ``jobs`` at a time.  Without jobs, the user first chooses a target for ``model``.
+    """Shows one target of ``jobs`` at a time, or the ``system`` that they are part of.
+
+    Without jobs, the user first chooses a target for ``model``.
 
     All methods can be called by any thread.
     """
@@ -52,17 +56,22 @@ class Session:
         *,
         folder: Path | None = None,
         model: Path | None = None,
+        system: Path | None = None,
         user_roots: Sequence[Path] = (),
     ) -> None:
-        """``folder`` is the folder of ``jobs``: they are searched again when its CMakeLists.txt changes."""
+        """``folder`` is that of the project with ``jobs``: they are searched again when its CMakeLists.txt changes.
+
+        With the file of a ``system``, the session begins with it, or with the first of ``jobs``.
+        """
         self.ended = threading.Event()
         self._changed = threading.Condition(threading.RLock())
         self._version = 0
         self._looked = 0.0
-        self._targets = Targets(jobs, folder)
-        self._outdated = False
+        self._outdated = ""  # the name of a file that names the targets, and has changed since the open one was read
         self._user_roots = tuple(user_roots or (jobs[0].request.user_roots if jobs else ()))
+        self._targets = self._find_targets(jobs, folder, system)
         self._configurations = Configurations(self._user_roots)
+        self._overview = Overview(system, self._user_roots) if system is not None else None
         self._start = Start(model, self._configurations.catalog) if model is not None and not jobs else None
         self._editor = Editor(jobs[0]) if jobs else None
         self.runs = Runs(self._bump)
@@ -80,6 +89,7 @@ class Session:
             "reload": self._reload,
             "choose": self._choose,
             "open": self._open,
+            "overview": self._show_overview,
             "generate": self._generate,
             "done": lambda body: self.ended.set(),
         }
@@ -137,6 +147,8 @@ class Session:
         svg = None
         if configuration:
             svg = self._configurations.picture(configuration) if name == "wiring" else None
+        elif editor is None and self._overview is not None:
+            svg = self._overview.picture() if name == "system" else None
         elif editor is not None:
             svg = draw(editor.loaded, name, editor.job.request.name)
         if svg is None:
@@ -256,13 +268,26 @@ class Session:
         job = self._targets.find(name)
         if job is None:
             raise Refused(f"there is no target '{name}'", status=404)
-        if name == self._opened().job.request.name:
+        if self._editor is not None and name == self._editor.job.request.name:
             return
-        if self._opened().draft.changed:
+        self._check_left()
+        self._editor = Editor(job)
+
+    def _show_overview(self, body: Body) -> None:
+        """Closes the open target of a system, and shows the system."""
+        if self._overview is None:
+            raise Refused("this target is not part of a system", status=409)
+        if self._editor is not None:
+            self._check_left()
+            self._overview.load()
+            self._editor, self._outdated = None, ""
+
+    def _check_left(self) -> None:
+        """Raises Refused if the open target cannot be closed now."""
+        if self.has_changes:
             raise Refused("there are unsaved changes", "save or undo them first", 409)
         self.runs.check_idle()
         self.runs.forget()
-        self._editor = Editor(job)
 
     def _create(self, body: Body) -> None:
         start = self._start
@@ -270,13 +295,19 @@ class Session:
             raise Refused("the project already exists", status=409)
         jobs = create(body, start.path, self._user_roots)
         with self._changed:
-            self._targets = Targets(jobs, jobs[0].source_dir)
+            self._targets = self._find_targets(jobs, jobs[0].source_dir)
             self._editor, self._start = Editor(jobs[0]), None
             self._publish()
 
     def _generate(self, body: Body) -> None:
         self.runs.check_idle()
         self._opened().check_conflict()
+        job = self._opened().job
+        if job.simulated and job.source_dir is None:
+            assert self._overview is not None
+            name = self._overview.path.name
+            hint = f"'epg new . --system {name}' writes one, in the folder of {name}"
+            raise Refused("this system has no project that could be built", hint, 409)
         count = sum(problem["severity"] == "error" for problem in self._shown["diagnostics"])
         if count:
             what = "is an error" if count == 1 else f"are {count} errors"
@@ -292,7 +323,18 @@ class Session:
 
     # making the state
 
+    def _find_targets(self, jobs: Sequence[Job], folder: Path | None, system: Path | None = None) -> Targets:
+        """The targets of a session that begins with ``jobs``, in the project or in the system."""
+        if system is not None:
+            around = folder or system.parent
+            return Targets(
+                system_jobs(system, around, self._user_roots), lambda: system_jobs(system, around, self._user_roots)
+            )
+        return Targets(jobs, (lambda: find_jobs(folder, Diagnostics())) if folder is not None else None)
+
     def _opened(self) -> Editor:
+        if self._editor is None and self._overview is not None:
+            raise Refused("no target of the system is open", "open a target first", 409)
         if self._editor is None:
             raise Refused("there is no project yet", "choose a target first", 409)
         return self._editor
@@ -304,25 +346,27 @@ class Session:
             if not at_once and now - self._looked < 0.9 * LOOK:
                 return
             self._looked = now
-            looked_at = self._editor or self._start
+            looked_at = self._editor or self._overview or self._start
             changed = looked_at is not None and looked_at.look()
-            if self._targets.look():
-                self._outdated = changed = True
+            file = self._targets.look()
+            if file:
+                changed = True
+                self._outdated = file if self._editor is not None else ""
                 self._open_anew()
             if changed:
                 self._publish()
 
     def _open_anew(self) -> None:
-        """Opens the target as the changed CMakeLists.txt defines it, as soon as there are no unsaved changes."""
+        """Opens the target as the changed file defines it, as soon as there are no unsaved changes."""
         editor = self._editor
         if editor is None or not self._outdated:
             return
         if editor.draft.changed:
-            editor.external = "another program changed CMakeLists.txt: EPG reads it again after you save or reload"
+            editor.external = f"another program changed {self._outdated}: EPG reads it again after you save or reload"
             return
         self._editor = Editor(self._targets.find(editor.job.request.name) or self._targets.jobs[0])
-        self._editor.external = "another program changed CMakeLists.txt; EPG has read it again"
-        self._outdated = False
+        self._editor.external = f"another program changed {self._outdated}; EPG has read it again"
+        self._outdated = ""
 
     def _publish(self) -> None:
         """Makes the state again from the files and the draft, and wakes all callers of :meth:`wait`."""
@@ -330,11 +374,16 @@ class Session:
             if self._editor is not None:
                 shown = {"phase": "connect", "create": None, **self._editor.show()}
                 shown["project"]["targets"] = self._targets.names
+                shown["project"]["system"] = self._overview.name if self._overview is not None else None
                 model, project = self._editor.loaded.parts.model, self._editor.project()
+            elif self._overview is not None:
+                shown, model, project = self._overview.show(), None, None
+                shown["project"]["targets"] = self._targets.names
             else:
                 assert self._start is not None
                 shown, model, project = self._start.show(), self._start.model, None
             ready = self._configurations.ready
+            ready = ready and shown["phase"] != "system"
             shown["configurations"] = self._configurations.entries(model, project) if ready else []
             self._shown = shown
             self._bump()

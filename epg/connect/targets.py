@@ -1,22 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The targets of a project.  They are searched again when a CMakeLists.txt changes."""
+"""The targets of a project or of a system.  They are searched again when the files that name them change."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from epg.connect.files import Watch
 from epg.connect.literal_calls import FILE
-from epg.connect.projects import Job, find_jobs
-from epg.diagnostics import Diagnostics
+from epg.connect.projects import Job
+
+Search = Callable[[], Sequence[Job]]
 
 
 class Targets:
-    """The ``jobs`` of the project in ``folder``.  Without a folder they never change."""
+    """The ``jobs`` that ``search`` has found.  Without a search they never change."""
 
-    def __init__(self, jobs: Sequence[Job], folder: Path | None = None) -> None:
-        self._folder = folder
+    def __init__(self, jobs: Sequence[Job], search: Search | None = None) -> None:
+        self._search = search
         self._take(jobs)
 
     @property
@@ -26,17 +27,19 @@ class Targets:
     def find(self, name: str) -> Job | None:
         return next((job for job in self.jobs if job.request.name == name), None)
 
-    def look(self) -> bool:
-        """Searches the targets again if a CMakeLists.txt has changed.  Returns True if it has and still has targets."""
-        if self._folder is None or not self._watch.changed():
-            return False
-        jobs = find_jobs(self._folder, Diagnostics())
+    def look(self) -> str:
+        """Searches the targets again if a file that names them has changed.
+
+        Returns the name of this file; empty if none has changed, or if there are no targets now.
+        """
+        changed = self._watch.changed() if self._search is not None else []
+        jobs = self._search() if self._search is not None and changed else ()
         if jobs:
             self._take(jobs)
-        return bool(jobs)
+        return changed[0].name if jobs else ""
 
     def _take(self, jobs: Sequence[Job]) -> None:
         self.jobs = list(jobs)
         files = {Path(job.request.caller.file) for job in jobs if job.request.caller is not None}
         files |= {job.source_dir / FILE for job in jobs if job.source_dir is not None}
-        self._watch = Watch(files if self._folder is not None else ())
+        self._watch = Watch(files if self._search is not None else ())

@@ -40,10 +40,12 @@ def view_of(loaded: Loaded) -> Data:
         "model": model_view(model) if model is not None else None,
         "components": _components(loaded),
         "wires": wires,
+        "by_system": loaded.by_system,
         "proposals": {
             name: match.proposal
             for name, match in loaded.matches.items()
             if name not in wires
+            and name not in loaded.by_system
             and match.proposal is not None
             and (match.port.direction == "input" or match.proposal not in taken)
         },

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -44,6 +45,11 @@ class Link:
     period: Fraction
     age: Fraction
 
+    @property
+    def sent(self) -> str:
+        """The times at which a message is sent, for the user."""
+        return "on change" if self.on_change else f"every {show(self.period, 'time')}"
+
 
 @dataclass(frozen=True)
 class Loop:
@@ -51,6 +57,10 @@ class Loop:
 
     targets: tuple[str, ...]
     age: Fraction
+
+    def __str__(self) -> str:
+        way = " -> ".join((*self.targets, self.targets[0]))
+        return f"loop {way}: a value is up to {show(self.age, 'time')} old when it comes back, and the transport's time"
 
 
 @dataclass(frozen=True)
@@ -64,13 +74,28 @@ class CheckedSystem:
     loops: Sequence[Loop]
     plant: Plant | None = None
 
+    @property
+    def plant_wires(self) -> Mapping[str, int]:
+        """The number of wires between the plant of the system and each of its targets."""
+        wires = () if self.plant is None else (*self.plant.inputs, *self.plant.outputs)
+        return Counter(wire.component.name.partition("/")[0] for wire in wires)
+
 
 def check_system(system: System, user_roots: Sequence[Path], diagnostics: Diagnostics) -> CheckedSystem | None:
     """The system with all of its targets, or None after reporting the mistakes in all files."""
-    errors = diagnostics.error_count
     loader = Loader(user_roots, diagnostics)
     requests = ((name, system.request(target, user_roots)) for name, target in system.targets.items())
-    applications = loader.applications(requests)
+    return check_whole(system, loader, loader.applications(requests), diagnostics)
+
+
+def check_whole(
+    system: System, loader: Loader, applications: Mapping[str, Application], diagnostics: Diagnostics
+) -> CheckedSystem | None:
+    """The system with the ``applications`` of its targets, which have been checked one by one.
+
+    None if a target has no application, because of its mistakes, or after reporting mistakes of the plant.
+    """
+    errors = diagnostics.error_count
     files = None if system.plant is None else load_plant(system.plant, loader.model, diagnostics)
     if len(applications) < len(system.targets) or diagnostics.error_count > errors:
         return None

@@ -25,13 +25,21 @@ _PARAMETERS = ("type", "unit", "qos")
 def load_system(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None) -> System | None:
     """The system in ``path``, or None after reporting mistakes."""
     errors = diagnostics.error_count
+    system = parse_system(path, diagnostics, wanted_by)
+    return system if diagnostics.error_count == errors else None
+
+
+def parse_system(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None) -> System | None:
+    """The system in ``path``, without the connections that have mistakes.
+
+    Reports all mistakes.  None if the file is not a system at all: it cannot be read, or has wrong keys or values.
+    """
     root = load_yaml(path, diagnostics, wanted_by)
     if root is None or (root.is_mapping and newer_version(root, "version", diagnostics)):
         return None
     if not validate(root, load_schema("system"), diagnostics):
         return None
-    system = _Reader(path, diagnostics).system(root)
-    return system if diagnostics.error_count == errors else None
+    return _Reader(path, diagnostics).system(root)
 
 
 @dataclass

@@ -14,7 +14,7 @@ from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
 from epg.models import load_model
 from epg.models.model import Model
-from epg.project import Request, load_parts
+from epg.project import ModelReader, Request, load_parts
 from epg.resolve.application import Application
 
 
@@ -24,6 +24,7 @@ class Loader:
 
     user_roots: Sequence[Path]
     diagnostics: Diagnostics
+    read_model: ModelReader = load_model
     _models: dict[Path, Model | None] = field(default_factory=dict)
 
     @property
@@ -31,12 +32,12 @@ class Loader:
         return targets_roots(self.user_roots)
 
     @cached_property
-    def _catalog(self) -> Catalog:
+    def catalog(self) -> Catalog:
         return load_catalog(self.roots, self.diagnostics)
 
     def family(self, name: str) -> Family | None:
         """The family of chips ``name``, or None if it has no port layer."""
-        return self._catalog.find_family(name)
+        return self.catalog.find_family(name)
 
     def applications(self, requests: Iterable[tuple[str, Request]]) -> dict[str, Application]:
         """The applications of requests, by the names that are given with them.
@@ -44,7 +45,7 @@ class Loader:
         Reports the mistakes in all files, and leaves out targets that have mistakes.
         """
         loaded = {
-            name: load_parts(request, self.diagnostics, self.model, self._catalog).application
+            name: load_parts(request, self.diagnostics, self.model, self.catalog).application
             for name, request in requests
         }
         return {name: application for name, application in loaded.items() if application is not None}
@@ -52,5 +53,5 @@ class Loader:
     def model(self, path: Path, diagnostics: Diagnostics) -> Model | None:
         """The model in ``path``, which is read once; None after reporting mistakes."""
         if path not in self._models:
-            self._models[path] = load_model(path, diagnostics)
+            self._models[path] = self.read_model(path, diagnostics)
         return self._models[path]

@@ -7,8 +7,7 @@ from other programs come from the left.  The plant of the system is on the left 
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from epg.graph.svg import WIRES, Picture, width
@@ -77,7 +76,8 @@ def draw_system(checked: CheckedSystem) -> str:
     for number, line in enumerate(lines):
         _draw_line(picture, line, targets, wide, wide + labels + number * _LANE, number % WIRES)
     if checked.plant is not None:
-        _draw_plant(picture, checked.plant, list(targets.values()), _WORLD if world else 0.0)
+        wires = checked.plant_wires
+        _draw_plant(picture, checked.plant, wires, list(targets.values()), _WORLD if world else 0.0)
     for end, row in world:
         y = targets[end.target].y(row)
         picture.arrow([(-_WORLD, y), (0, y)], "line", f"{end}: from other programs")
@@ -96,8 +96,7 @@ def _lines(links: Sequence[Link], targets: dict[str, _Target]) -> list[_Line]:
         first = several[0]
         sender = _row(first.connection.sender, False, targets, rows)
         receivers = [_row(link.connection.receiver, True, targets, rows) for link in several]
-        every = "on change" if first.on_change else f"every {show(first.period, 'time')}"
-        label = ", ".join(text for text in (first.unit, every) if text)
+        label = ", ".join(text for text in (first.unit, first.sent) if text)
         title = f"{first.connection.sender}: {first.message}"
         lines.append(_Line(sender, tuple(dict.fromkeys(receivers)), label, title))
     return lines
@@ -139,9 +138,10 @@ def _draw_line(
         picture.arrow([(edge, y), (lane, y), (lane, end), (edge, end)], style, f"{line.title} to {receiver}")
 
 
-def _draw_plant(picture: Picture, plant: Plant, targets: Sequence[_Target], world: float) -> None:
+def _draw_plant(
+    picture: Picture, plant: Plant, wires: Mapping[str, int], targets: Sequence[_Target], world: float
+) -> None:
     """Draws the plant.  ``world`` is the room for inputs from other programs between it and the targets."""
-    wires = Counter(wire.component.name.partition("/")[0] for wire in (*plant.inputs, *plant.outputs))
     facts = f"simulated, {show(plant.model.step, 'time')}"
     wide = max(width(plant.model.name, 13), width("plant", 11), width(facts, 10)) + 24
     right = -world - 30 - max((width(_wires(count), 10) for count in wires.values()), default=0.0)
@@ -154,7 +154,7 @@ def _draw_plant(picture: Picture, plant: Plant, targets: Sequence[_Target], worl
     ):
         picture.text(right - wide / 2, down, text, "middle", size, style)
     for target in targets:
-        if wires[target.name]:
+        if target.name in wires:
             y = target.top + 20
             picture.line([(right, y), (0, y)], "earth", f"{target.name} senses and moves {plant.model.name}")
             picture.text(right + 6, y - 5, _wires(wires[target.name]), "start", 10, "faint")

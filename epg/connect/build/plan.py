@@ -63,7 +63,8 @@ def make_plan(job: Job, configuration: Configuration | None, *, run: bool = True
 
     The products are therefore the same, including files that are made after linking, such as ``.uf2``.
 
-    ``configuration`` is None if it has an error; CMake then reports it.  Without ``run``, no program that the build
+    ``configuration`` is None if it has an error; CMake then reports it.  It does not count for the simulation of a
+    system, which needs no tools of the target.  Without ``run``, no program that the build
     folder names is started, not even to ask for its version.  With ``anyway``, there are steps even if tools are
     missing that the project's own CMake files may find.
     """
@@ -74,6 +75,8 @@ def make_plan(job: Job, configuration: Configuration | None, *, run: bool = True
     west = job.built_by == "west"
     names = (*ALWAYS, *(["west", "zephyr"] if west and not cache else []))
     findings = find_tools(names, job.request.roots, cache, run=run)
+    if job.simulated:
+        configuration = None
     lack = lack_of(job, configuration, findings, build, cache, run=run)
     if lack.certain or (lack.likely and not anyway):
         return Plan(source, build, (), {}, cache, (*lack.certain, *lack.likely), can_try=not lack.certain)

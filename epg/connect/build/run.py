@@ -45,7 +45,7 @@ class Build(Activity):
 
 def build(activity: Activity, job: Job, *, anyway: bool = False) -> tuple[Outcome, list[Made]]:
     """Builds ``job`` as a part of ``activity``, in its thread.  Returns the products, too."""
-    configuration = configuration_of(job.request)
+    configuration = None if job.simulated else configuration_of(job.request)
     plan = make_plan(job, configuration, anyway=anyway)
     if plan.missing:
         return Outcome("failed", plan.missing, {"can_try": plan.can_try}), []

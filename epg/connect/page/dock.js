@@ -8,13 +8,23 @@ import { hardware } from "./hardware.js";
 import { icon } from "./icons.js";
 import { picture } from "./pictures.js";
 import { problemList } from "./problems.js";
+import { connectionTable } from "./system.js";
 import { change, openTab, ui } from "./ui.js";
 
 /** @param {State} state */
 function tabs(state) {
   const { pictures, diagnostics } = state;
+  const problems = {
+    name: "problems",
+    title: `Problems${diagnostics.length ? ` ${diagnostics.length}` : ""}`,
+    content: problemList,
+  };
+  if (state.phase === "system") {
+    const connections = { name: "connections", title: "Connections", content: connectionTable };
+    return [problems, connections, { name: "system", title: "Picture", content: picture }];
+  }
   return [
-    { name: "problems", title: `Problems${diagnostics.length ? ` ${diagnostics.length}` : ""}`, content: problemList },
+    problems,
     { name: "build", title: buildTitle(state), content: buildPanel },
     { name: "hardware", title: "Pins and peripherals", content: hardware },
     "wiring" in pictures && { name: "wiring", title: "Pinout", content: picture },

@@ -8,6 +8,7 @@ import { h } from "./dom.js";
 import { icon } from "./icons.js";
 import { counted, shortFile } from "./problems.js";
 import { current } from "./server.js";
+import { backToSystem } from "./system.js";
 import { attempt, openTab } from "./ui.js";
 
 /** @param {State} state */
@@ -17,14 +18,20 @@ export function header(state) {
   if (state.phase === "choose") {
     return [brand, h("p.title", { key: "title" }, "New project"), h("span.space", { key: "space" }), close];
   }
+  const space = h("span.space", { key: "space" });
+  if (state.phase === "system") {
+    const name = h("h1.title", { key: "title", title: state.project.folder }, `System ${state.project.name}`);
+    return [brand, name, problemsButton(state), space, close];
+  }
   const { draft, build } = state;
   const running = build.state === "running";
   return [
     brand,
+    state.project.system && backButton(state.project.system),
     projectName(state),
     targetButton(state),
     problemsButton(state),
-    h("span.space", { key: "space" }),
+    space,
     h(
       "p",
       { class: `saved${draft.changed ? " unsaved" : ""}`, key: "saved", role: "status" },
@@ -78,6 +85,12 @@ function button(text, keys, enabled, onclick) {
     { key: text, onclick, disabled: !enabled, title: keys, "aria-keyshortcuts": keys.replace("Ctrl", "Control") },
     text,
   );
+}
+
+/** @param {string} system */
+function backButton(system) {
+  const label = `Back to the system ${system}`;
+  return h("button.quiet", { key: "back", "aria-label": label, title: label, onclick: backToSystem }, `← ${system}`);
 }
 
 /** @param {State} state */

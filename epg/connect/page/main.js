@@ -17,6 +17,7 @@ import { header } from "./header.js";
 import { modelHead, modelPorts } from "./ports.js";
 import { current, follow, hasEnded } from "./server.js";
 import { startPage } from "./start.js";
+import { drawLanes, systemPage } from "./system.js";
 import { attempt, draw, ui, whenDrawn } from "./ui.js";
 import { drawWires } from "./wires.js";
 
@@ -32,17 +33,20 @@ function drawPage() {
   }
   if (!state) return;
   if (!isKnown(state)) ui.held = null;
-  const connecting = state.phase === "connect";
-  document.title = connecting ? `${state.draft.changed ? "● " : ""}${state.project.name} – EPG` : "New project – EPG";
-  document.body.className = `${state.phase} dock-${connecting ? ui.dock : "closed"}${ui.held ? " holding" : ""}`;
+  const started = state.phase !== "choose";
+  document.title = started ? `${state.draft.changed ? "● " : ""}${state.project.name} – EPG` : "New project – EPG";
+  document.body.className = `${state.phase} dock-${started ? ui.dock : "closed"}${ui.held ? " holding" : ""}`;
   render(part("header"), header(state));
-  render(part("main"), connecting ? diagram(state) : [startPage(state)]);
-  part("dock").hidden = !connecting;
-  if (connecting) render(part("dock"), dock(state));
+  render(part("main"), MAIN[state.phase](state));
+  part("dock").hidden = !started;
+  if (started) render(part("dock"), dock(state));
   drawStops();
   drawDialog();
   drawWires();
+  drawLanes();
 }
+
+const MAIN = { choose: startPage, connect: diagram, system: systemPage };
 
 /** @param {State} state */
 function diagram(state) {

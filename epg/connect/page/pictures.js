@@ -80,6 +80,7 @@ async function fetchWiring(image) {
 
 /** @param {State} state */
 function description(state, name) {
+  if (name === "system") return "The targets and their connections. The tab Connections contains the same as a table.";
   if (name === "application")
     return "Topics, components, conversions and ports of the application. The lists of ports contain the same.";
   if (name === "schedule") return "One control cycle: the work between two ticks, in order.";

@@ -102,10 +102,16 @@ function row(state, side, port, diagnostics) {
     },
     h(
       "div.port-head",
-      h("label.port-name", { for: id("ends", name, 0), title: port.description || null }, name),
+      h(
+        name in state.by_system ? "span.port-name" : "label.port-name",
+        { key: "name", for: name in state.by_system ? null : id("ends", name, 0), title: port.description || null },
+        name,
+      ),
       unitMark(port),
     ),
-    shown.map((end, n) => field(state, side, port, end, n)),
+    name in state.by_system
+      ? h("p.muted", { key: "system" }, "By the system: topic ", h("code", state.by_system[name]))
+      : shown.map((end, n) => field(state, side, port, end, n)),
     proposal &&
       h(
         "button.proposal",

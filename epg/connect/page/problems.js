@@ -6,7 +6,7 @@ import { h, id, plural } from "./dom.js";
 import { icon } from "./icons.js";
 import { current } from "./server.js";
 import { showSource } from "./source.js";
-import { change, ui } from "./ui.js";
+import { attempt, change, ui } from "./ui.js";
 
 /** @param {Message} message */
 export const isError = (message) => message.severity === "error";
@@ -48,7 +48,8 @@ export function inline(diagnostics) {
 /** @param {State} state */
 export function problemList(state) {
   if (state.diagnostics.length === 0) {
-    return h("p.empty", icon("done"), "No problems. The target can be generated.");
+    const right = state.phase === "system" ? "All targets and connections are right." : "The target can be generated.";
+    return h("p.empty", icon("done"), `No problems. ${right}`);
   }
   return h("ul.problem-list", state.diagnostics.map(problem));
 }
@@ -92,6 +93,9 @@ export function problem(message) {
         placeText(message.file.split(/[\\/]/).pop(), message.line),
       ),
     command && copyButton("Copy command", command),
+    message.targets?.map((target) =>
+      h("button.quiet", { key: target, onclick: () => attempt("open", { target }) }, `Open ${target}`),
+    ),
   );
 }
 

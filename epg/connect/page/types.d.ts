@@ -6,6 +6,8 @@
 interface State extends StartState {
   project: Project & { targets: string[] };
   components: Component[];
+  /** The topics of ports that the system connects, without a component of the target. */
+  by_system: Record<string, string>;
   /** The ends of each port of the model that the bindings name. An output that is unconnected on purpose has none. */
   wires: Record<string, End[]>;
   /** For ports without a wire: the component port with a similar name. */
@@ -28,17 +30,56 @@ interface State extends StartState {
   why_not: string;
 }
 
-/** The state before a target is chosen for a model. The page shows one of the two phases. */
+/** The state while a system is shown, and none of its targets is open. */
+interface SystemState extends StartState {
+  project: Project & { targets: string[] };
+  system: System | null;
+  pictures: Record<string, boolean>;
+  draft: Draft;
+}
+
+interface System {
+  name: string;
+  targets: { name: string; target: string; middleware: string; period: string; model: string }[];
+  connections: Connection[];
+  /** The ends to which other programs send. */
+  world: (SystemEnd & { topic: string })[];
+  loops: string[];
+  /** The common plant, and the number of its wires to each target. */
+  plant: { name: string; step: string; wires: Record<string, number> } | null;
+}
+
+/** A connection. The texts after its topic are empty as long as errors prevent them. */
+interface Connection {
+  from: SystemEnd;
+  to: SystemEnd;
+  topic: string;
+  message: string;
+  unit: string;
+  sent: string;
+  age: string;
+}
+
+interface SystemEnd {
+  target: string;
+  component: string;
+  /** The component, one of its values, or a port of the model. */
+  port: string;
+}
+
+/** The state before a target is chosen for a model. The page shows one of the three phases. */
 interface StartState {
   version: number;
   /** The version of EPG. */
   epg: string;
-  phase: "connect" | "choose";
+  phase: "connect" | "choose" | "system";
   project: (Project & { targets: string[] }) | null;
   /** The proposed folder and name of a new project; null in the phase "connect". */
   create: { folder: string; name: string } | null;
   model: Model | null;
   diagnostics: Message[];
+  /** In the phase "system" only; null if the file cannot be read. */
+  system?: System | null;
   /** Empty until the server has read them. */
   configurations: Configuration[];
   build: Build;
@@ -47,7 +88,10 @@ interface StartState {
 interface Project {
   name: string;
   folder: string;
-  files: { tcf: string; model: string; bindings: string };
+  /** Of a target: tcf, model, bindings; of a system: system. */
+  files: Record<string, string>;
+  /** The system that the target is part of, and was opened from. */
+  system: string | null;
 }
 
 interface Draft {
@@ -128,6 +172,8 @@ interface Message extends Place {
   component?: string | null;
   /** The keys of the value in a .tcf that the message is about. */
   path?: string[];
+  /** In a system: the targets whose files have the mistake. */
+  targets?: string[];
 }
 
 interface Place {

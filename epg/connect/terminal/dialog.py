@@ -84,10 +84,19 @@ class _Dialog:
     # Questions before and after those about ports ---------------------------------------------------------------------
 
     def _choose_target(self) -> None:
-        targets = self._talk.state["project"]["targets"]
-        while len(targets) > 1:
+        """Lets the user choose one of several targets.  A system is shown first, with its messages."""
+        state = self._talk.state
+        targets = state["project"]["targets"]
+        usual = targets[0] if state["phase"] == "system" else state["project"]["name"]
+        if state["phase"] == "system":
+            self._console.say(f"System {state['project']['name']}")
+            for connection in state["system"]["connections"]:
+                ends = [f"{end['target']}/{end['port']}" for end in (connection["from"], connection["to"])]
+                self._console.say(f"  {' -> '.join(ends)}  {connection['sent']}".rstrip())
+            self._talk.say_messages(state["diagnostics"])
+        while len(targets) > 1 or self._talk.state["phase"] == "system":
             self._console.table(("", ""), [(str(number), name) for number, name in enumerate(targets, 1)])
-            name = self._talk.named(self._console.ask("target", self._talk.state["project"]["name"]), targets, "target")
+            name = self._talk.named(self._console.ask("target", usual), targets, "target")
             if name is not None:
                 self._talk.act("open", {"target": name})
                 return

@@ -43,13 +43,15 @@ def ports_of(state: State) -> list[ModelPort]:
 
 
 def is_open(state: State, port: ModelPort) -> bool:
-    return port.name not in state["wires"]
+    return port.name not in state["wires"] and port.name not in state["by_system"]
 
 
 def wire_text(state: State, port: ModelPort) -> str:
     """The component ports that a port is connected with, and the conversions."""
     if is_open(state, port):
         return OPEN
+    if port.name in state["by_system"]:
+        return f"topic {state['by_system'][port.name]}, by the system"
     ends = state["wires"][port.name]
     return ", ".join(f"{end['reference']} {end['text']}".rstrip() for end in ends) or UNCONNECTED
 

@@ -14,6 +14,7 @@ import pytest
 from epg.connect.session import Session
 from tests.connect.conftest import ROOT, one_axis_project
 from tests.connect.page import session_of
+from tests.connect.test_overview import write_pair
 from tests.emulator.toolchain import npm_package, skip_if_missing
 
 from .axe import HERE
@@ -60,19 +61,21 @@ def test_each_state_in_a_signature_has_a_type() -> None:
 def test_the_states_of_sessions_have_these_types(tmp_path: Path) -> None:
     """The compiler finds keys that are missing, unknown keys, and values of another type."""
     opened, started = _states(tmp_path)
+    systems = [Session([], system=write_pair(tmp_path / "pair")).state()]
+    assert systems[0]["phase"] == "system" and systems[0]["system"]
     assert {state["phase"] for state in opened} == {"connect"} and {state["phase"] for state in started} == {"choose"}
-    problem = _compiled(tmp_path, opened, started)
+    problem = _compiled(tmp_path, opened, started, systems)
     assert problem == ""
     wrong = json.loads(json.dumps(opened[0]))
     wrong["draft"]["can_undo_it"] = wrong["draft"].pop("can_undo")
-    assert "'\"can_undo_it\"' does not exist in type 'Draft'" in _compiled(tmp_path, [wrong], [])
+    assert "'\"can_undo_it\"' does not exist in type 'Draft'" in _compiled(tmp_path, [wrong], [], [])
 
 
-def _compiled(folder: Path, opened: list[dict[str, Any]], started: list[dict[str, Any]]) -> str:
-    (folder / "states.ts").write_text(
-        f"const opened: State[] = {json.dumps(opened)};\nconst started: StartState[] = {json.dumps(started)};\n",
-        encoding="utf-8",
-    )
+def _compiled(folder: Path, *states: list[dict[str, Any]]) -> str:
+    """The complaints about states with an open target, before a target is chosen, and of systems."""
+    kinds = zip(("State", "StartState", "SystemState"), states, strict=True)
+    lines = [f"const all{kind}: {kind}[] = {json.dumps(some)};\n" for kind, some in kinds]
+    (folder / "states.ts").write_text("".join(lines), encoding="utf-8")
     settings = {
         "extends": str(HERE / "tsconfig.json"),
         "compilerOptions": {"strictNullChecks": True},
