@@ -4,6 +4,13 @@
 Other users of the computer can read an address, because it is on the command line of the browser.  A token therefore
 works only once.  The page gets a secret for it, and never puts the secret into an address.
 
+A secret is valid until EPG ends.  The tabs of an EPG that has ended have no access to the next one, even if that has
+the same folder and port.  To have it, a tab would keep a secret that is still valid, and EPG would take the port of its
+last start.  Between the two starts, a program of another user can listen on that port.  If the user then reloads the
+tab, the page of that program has the tab's origin.  It reads the secret that the tab keeps, and can install a service
+worker, which answers in place of every later EPG on this port.  The requests of such a page come from the user's own
+browser, so ``peer.py`` cannot refuse them.  A start without ``--port`` therefore takes any free port.
+
 >>> keys = Keys()
 >>> token = keys.new_token()
 >>> keys.is_secret(keys.exchange(token) or "")

@@ -88,9 +88,9 @@ def serving(session: Session) -> Iterator[Page]:
 
 
 @contextmanager
-def serving_pages(session: Session) -> Iterator[Callable[[], Page]]:
+def serving_pages(session: Session, port: int = 0) -> Iterator[Callable[[], Page]]:
     """Opens pages of ``session``, all on one server."""
-    server = Server(session)
+    server = Server(session, port)
     thread = threading.Thread(target=server.run)
     thread.start()
     try:

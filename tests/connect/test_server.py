@@ -24,7 +24,7 @@ from epg.connect.keys import Keys
 from epg.connect.peer import owner
 from epg.connect.server import HEADERS, Server
 from epg.connect.session import Session
-from tests.connect.page import Denied, Page, serving, session_of
+from tests.connect.page import Denied, Page, serving, serving_pages, session_of
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 CTRL_C = signal.CTRL_C_EVENT if sys.platform == "win32" else signal.SIGINT
@@ -92,6 +92,18 @@ def test_an_address_opens_one_page(project: Path) -> None:
     finally:
         server.session.ended.set()
         thread.join(20)
+
+
+def test_a_secret_ends_with_its_server(project: Path) -> None:
+    """Also for the same folder and the same port: ``keys.py`` gives the reason."""
+    with serving_pages(session_of(project)) as open_page:
+        page = open_page()
+        assert page.state()["project"]["name"] == "robot"
+    with serving_pages(session_of(project), urlsplit(page.site).port or 0) as open_page:
+        with pytest.raises(Denied) as denied:
+            page.state()
+        assert denied.value.status == 401
+        assert open_page().state()["project"]["name"] == "robot"
 
 
 def test_of_two_at_once_one_gets_in() -> None:

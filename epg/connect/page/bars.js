@@ -21,11 +21,11 @@ export function bars(state) {
     list.push(
       bar("lost", "error", [
         h("b", "The connection to EPG is lost. "),
-        "Start EPG again",
+        "If EPG has ended, start it again",
         folder ? [" in ", h("code", folder)] : null,
         " with ",
         h("code", "epg connect"),
-        ", and open the address that it prints.",
+        ". EPG then opens a new page, or prints its address. This page can be closed.",
         state?.draft?.changed ? " If EPG has ended, unsaved changes are lost; the tab Changes still shows them." : null,
       ]),
     );
