@@ -234,6 +234,8 @@ def test_only_files_of_the_page_are_given_out(page: Page) -> None:
 
 def test_every_file_of_the_page_is_there(page: Page) -> None:
     for path in (ROOT / "epg/connect/page").iterdir():
+        if path.name == "types.d.ts":  # for the compiler that checks the scripts
+            continue
         data, headers = page.get(path.name)
         assert data == path.read_bytes()
         assert headers["Content-Type"].split("/")[0] in ("text", "image")
