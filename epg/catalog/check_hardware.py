@@ -50,7 +50,7 @@ def check_board(node: YamlNode, diagnostics: Diagnostics) -> None:
             diagnostics.error("wrong-value", span, message, hint="keep one of the two", notes=[first])
         seen.setdefault(name, (section, span))
     if "layout" in node:
-        _layout(node["layout"], {name for section, name, _ in groups if section == "pins"}, diagnostics)
+        _layout(node["layout"], {name for _, name, _ in groups}, diagnostics)
 
 
 def _layout(layout: YamlNode, pins: set[str], diagnostics: Diagnostics) -> None:

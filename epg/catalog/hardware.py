@@ -179,7 +179,7 @@ class Board:
     ``sdks`` maps each SDK to its name of the board: "pico_sdk" -> "pico2".  ``lacks`` maps the transports that this
     board does not have, although platforms offer them, to the reason.  ``devicetree`` maps each node that the board's
     devicetree in Zephyr enables to its pins; ``console`` is the node of the console, or empty.  ``layout`` describes
-    the places of the pins.
+    the places of the pins; None for boards without pins.
     """
 
     name: str
@@ -313,7 +313,7 @@ def make_board(node: YamlNode, folder: Path) -> Board:
         **stated,
         onboard=MappingProxyType(onboard),
         devicetree=MappingProxyType({label: texts_of(node, "devicetree", "nodes", label) for label in nodes}),
-        layout=make_layout(node, pins),
+        layout=make_layout(node, pins, {*onboard, *map_of(node, "reserved")}),
         node=node,
         files=_files(node, folder / "board.yaml"),
         span=node["board"].span,

@@ -1,23 +1,38 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The places of the pins of a board, as rows of contacts.  Pictures of its wiring are drawn from them."""
+"""The places of the pins of a board, as rows of contacts.  Pictures of its wiring are drawn from them.
+
+A board without such data gets rows that are made of the names of its pins, and that are not to scale.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from epg.documents.items import map_of, text_of, texts_of, values_of
+from epg.documents.items import flag_of, map_of, text_of, texts_of, values_of
 from epg.source import YamlNode
+
+_UNKNOWN = "The places of the contacts are not known: see the manual of the board."
 
 
 @dataclass(frozen=True)
 class Contact:
-    """One contact of a row.  ``pin`` is the chip's name of the pin; empty for ground, supplies and other contacts."""
+    """One contact of a row.  ``pin`` is the chip's name of the pin; empty for ground, supplies and other contacts.
 
-    number: int
+    The pin can be one that is reserved, or wired to a device on the board, too.  ``number`` is None if it is not known.
+    ``row`` is the title of its row.
+    """
+
+    number: int | None
     name: str
     pin: str
+    row: str = ""
+
+    @property
+    def title(self) -> str:
+        """Its number on the board: ``36``, ``CN11 16``; empty if it is not known."""
+        return "" if self.number is None else f"{self.row} {self.number}".strip()
 
 
 @dataclass(frozen=True)
@@ -43,35 +58,58 @@ class Supply:
 
 @dataclass(frozen=True)
 class Layout:
-    """The contacts of a board, seen from above.  ``top`` names the part of the board at its upper edge."""
+    """The contacts of a board, seen from above.  ``top`` names the part of the board at its upper edge, or is empty."""
 
     top: str
     rows: tuple[Row, ...]
     supplies: Mapping[str, Supply]
     notes: tuple[str, ...]  # notes that apply to all pins
+    to_scale: bool = True
 
     def role(self, contact: Contact) -> str:
         """ "pin", or the role of a contact that is not a pin."""
         return "pin" if contact.pin else self.supplies[contact.name].role
 
 
-def make_layout(node: YamlNode, pins: tuple[str, ...]) -> Layout | None:
-    """The layout in a checked ``board.yaml``; None if it has none."""
+def make_layout(node: YamlNode, pins: tuple[str, ...], others: Collection[str]) -> Layout | None:
+    """The layout of a checked ``board.yaml``; without data, one that is made of ``pins``; None without pins.
+
+    ``others`` are the pins that are reserved or wired to devices on the board.
+    """
     layout = node.get("layout")
     if layout is None:
-        return None
-    rows = tuple(_row(child, pins) for child in layout["rows"].elements())
+        return _made_of(pins) if pins else None
+    rows = tuple(_row(child, {*pins, *others}) for child in layout["rows"].elements())
     supplies = {name: Supply(**values_of(child, Supply)) for name, child in map_of(layout, "supplies").items()}
-    return Layout(text_of(layout, "top"), rows, MappingProxyType(supplies), texts_of(layout, "notes"))
+    to_scale = "to_scale" not in layout or flag_of(layout, "to_scale")
+    return Layout(text_of(layout, "top"), rows, MappingProxyType(supplies), texts_of(layout, "notes"), to_scale)
 
 
-def _row(node: YamlNode, pins: tuple[str, ...]) -> Row:
+def _made_of(pins: tuple[str, ...]) -> Layout:
+    """Rows with the pins of each port of the chip, half of them on each side."""
+    ports: dict[str, list[Contact]] = {}
+    for pin in pins:
+        ports.setdefault(pin.rstrip("0123456789"), []).append(Contact(None, pin, pin))
+    if len(ports) == 1:
+        (whole,) = ports.values()
+        half = (len(whole) + 1) // 2
+        rows = [Row("left", "", tuple(whole[:half])), Row("right", "", tuple(whole[half:]))]
+        return Layout("", tuple(row for row in rows if row.contacts), MappingProxyType({}), (_UNKNOWN,), False)
+    made: list[Row] = []
+    for port, found in sorted(ports.items()):
+        left = sum(len(row.contacts) for row in made) < len(pins) / 2
+        made.append(Row("left" if left else "right", port or "pins", tuple(found)))
+    return Layout("", tuple(made), MappingProxyType({}), (_UNKNOWN,), False)
+
+
+def _row(node: YamlNode, pins: Collection[str]) -> Row:
     first, step = _whole(node["first"]), _whole(node["step"]) if "step" in node else 1
     names = [str(child.value) for child in node["contacts"].elements()]
+    title = text_of(node, "title")
     contacts = tuple(
-        Contact(first + index * step, name, name if name in pins else "") for index, name in enumerate(names)
+        Contact(first + index * step, name, name if name in pins else "", title) for index, name in enumerate(names)
     )
-    return Row(text_of(node, "side"), text_of(node, "title"), contacts)
+    return Row(text_of(node, "side"), title, contacts)
 
 
 def _whole(node: YamlNode) -> int:

@@ -74,8 +74,7 @@ def _wiring(request: Request, title: str, diagnostics: Diagnostics) -> str:
     target = configuration.target
     if target.board.layout is None:
         message = f"EPG cannot draw the wiring of {target.board.summary}"
-        hint = "add a 'layout' to its board.yaml: docs/adding-a-board.md" if target.has_pins else "it has no pins"
-        diagnostics.error("no-layout", configuration.root["target"].span, message, hint=hint)
+        diagnostics.error("no-layout", configuration.root["target"].span, message, hint="it has no pins")
     return draw_wiring(target, configuration.components, diagnostics.checked(assignments), title)
 
 

@@ -12,8 +12,8 @@ All text is in a monospaced font.  In browsers, the characters of these fonts ar
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from xml.sax.saxutils import escape
+from collections.abc import Mapping, Sequence
+from xml.sax.saxutils import escape, quoteattr
 
 CHARACTER = 0.62
 """The width of a character, divided by the font size."""
@@ -45,6 +45,13 @@ text { font-family: ui-monospace, 'DejaVu Sans Mono', Menlo, Consolas, monospace
 .supply { fill: #d1242f; stroke: #1f2328; }
 .other { fill: #bf8700; stroke: #1f2328; }
 .sign { fill: none; stroke: #ffffff; stroke-width: 1.6; }
+.reserved { fill: #59636e; stroke: #1f2328; }
+.fits { fill: #ffffff; stroke: #1a7f37; stroke-width: 3; }
+.unfit { fill: #ffffff; stroke: #818b98; stroke-width: 1.2; }
+.cross { fill: none; stroke: #59636e; stroke-width: 1.4; }
+.wrong { fill: none; stroke: #d1242f; stroke-width: 2.4; }
+.chosen { fill: none; stroke: #0969da; stroke-width: 2; }
+.hit { fill: transparent; cursor: pointer; }
 .line { fill: none; stroke: #1f2328; stroke-width: 1.4; }
 .earth { fill: none; stroke: #1f2328; stroke-width: 1.6; stroke-dasharray: 6 3; }
 .faint { fill: #59636e; }
@@ -63,6 +70,12 @@ text { fill: #f0f6fc; }
 .supply { fill: #ff7b72; stroke: #f0f6fc; }
 .other { fill: #d29922; stroke: #f0f6fc; }
 .sign { stroke: #0d1117; }
+.reserved { fill: #9198a1; stroke: #f0f6fc; }
+.fits { fill: #0d1117; stroke: #3fb950; }
+.unfit { fill: #0d1117; stroke: #656c76; }
+.cross { stroke: #9198a1; }
+.wrong { stroke: #ff7b72; }
+.chosen { stroke: #58a6ff; }
 .line, .earth { stroke: #f0f6fc; }
 .faint { fill: #9198a1; }
 """
@@ -88,6 +101,12 @@ class Picture:
         self._reach(x, y, x + wide, y + high)
         place = f'x="{_n(x)}" y="{_n(y)}" width="{_n(wide)}" height="{_n(high)}" rx="{_n(round)}"'
         self._add("rect", place, style, title)
+
+    def hit(self, x: float, y: float, wide: float, high: float, data: Mapping[str, str], title: str) -> None:
+        """Adds a rectangle that cannot be seen, for a page that reacts to the pointer.  ``data`` names its meaning."""
+        named = " ".join(f"data-{name}={quoteattr(value)}" for name, value in data.items())
+        place = f'x="{_n(x)}" y="{_n(y)}" width="{_n(wide)}" height="{_n(high)}" {named}'
+        self._add("rect", place, "hit", title)
 
     def line(self, points: Sequence[tuple[float, float]], style: str = "line", title: str = "") -> None:
         """Adds a line through ``points``."""

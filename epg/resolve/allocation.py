@@ -29,7 +29,7 @@ from epg.resolve.pins import Pins
 from epg.resolve.preferences import start_of, triggering_place, widest_places
 from epg.resolve.search import WHOLE, Demand, Place, find_places
 
-__all__ = ["Assignment", "Hardware", "agreement", "allocate"]
+__all__ = ["Assignment", "Hardware", "agreement", "allocate", "as_written"]
 
 NODES = 255
 """The ``instance`` of the first peripheral that a devicetree node describes.  The others count down from it."""
@@ -125,6 +125,17 @@ def allocate(
     if diagnostics.error_count > errors:
         return None
     return MappingProxyType({claim.key: result[claim.key] for claim in claims})
+
+
+def as_written(claims: Sequence[Claim], target: Target) -> Hardware:
+    """The pins of claims as the ``.tcf`` states them, also if they are in conflict.  Pins of no chip are left out."""
+    result: dict[ClaimKey, Assignment] = {}
+    for claim in claims:
+        names = {signal: target.board.pin_name(str(stated.value)) for signal, stated in claim.signals.items()}
+        pins = {signal: target.soc.numbers[pin] for signal, pin in names.items() if pin in target.soc.numbers}
+        if target.has_pins and pins:
+            result[claim.key] = Assignment(MappingProxyType(pins), 0, 0, MappingProxyType({}), "see the messages")
+    return MappingProxyType(result)
 
 
 def _nodes(claims: Sequence[Claim], target: Target, diagnostics: Diagnostics) -> dict[ClaimKey, Assignment]:

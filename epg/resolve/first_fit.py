@@ -163,14 +163,19 @@ class _Search:
         return None
 
     def _choices(self, each: _Open, used: Collection[str]) -> Iterator[dict[str, str]]:
-        """The sets of free pins for the missing signals of a claim, the preferred ones first."""
+        """The sets of free pins for the missing signals of a claim, the preferred ones first.
+
+        Of adjacent pins, the first signal gets the one with the lower number, if possible.
+        """
         stated = {signal: self.target.board.pin_name(str(s.value)) for signal, s in each.claim.signals.items()}
         free = [[pin for pin in each.choices[signal] if pin not in used] for signal in each.missing]
+        found = []
         for chosen in itertools.product(*free):
             result = dict(zip(each.missing, chosen, strict=True))
-            pair = [(stated | result)[signal] for signal in each.resource_class.neighbours]
-            if len(set(chosen)) == len(chosen) and (not pair or self.pins.are_neighbours(*pair)):
-                yield result
+            pair = [self.target.soc.numbers[(stated | result)[signal]] for signal in each.resource_class.neighbours]
+            if len(set(chosen)) == len(chosen) and (not pair or abs(pair[0] - pair[1]) == 1):
+                found.append((pair != sorted(pair), result))
+        return (result for _, result in sorted(found, key=lambda item: item[0]))
 
     def _possible(self, demands: Mapping[int, Demand]) -> bool:
         """True if all claims have places: those in ``demands`` with their new pins, the others with any pins."""

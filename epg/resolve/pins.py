@@ -79,7 +79,7 @@ class Pins:
     ) -> frozenset[Place]:
         """The places that ``claim`` can have with its pins; empty after reporting why there are none."""
         neighbours = [pins[signal] for signal in resource_class.neighbours if signal in pins]
-        if len(neighbours) == 2 and not self.are_neighbours(*neighbours):
+        if len(neighbours) == 2 and not self._are_neighbours(*neighbours):
             self._report_neighbours(claim, resource_class, neighbours)
             return frozenset()
         found = self.reachable(resource_class, peripheral, pins)
@@ -201,8 +201,7 @@ class Pins:
         }
         return not reached.issubset(self.others.instances)
 
-    def are_neighbours(self, one: str, other: str) -> bool:
-        """True if the numbers of two pins of the chip follow each other."""
+    def _are_neighbours(self, one: str, other: str) -> bool:
         numbers = self.target.soc.numbers
         return abs(numbers[one] - numbers[other]) == 1
 

@@ -17,7 +17,8 @@ from tests.graph.pictures import Line, Svg
 ROOT = Path(__file__).resolve().parents[2]
 WHAT = ("application", "schedule", "wiring")
 DOCUMENTED = {f"jiwy-{what}.svg": (what, "rpi_pico2_freertos_jiwy", "jiwy") for what in WHAT} | {
-    "jiwy-wiring-rpi_pico.svg": ("wiring", "rpi_pico_freertos_jiwy", "jiwy")
+    "jiwy-wiring-rpi_pico.svg": ("wiring", "rpi_pico_freertos_jiwy", "jiwy"),
+    "jiwy-wiring-nucleo_h743zi.svg": ("wiring", "nucleo_h743zi_bare_metal_jiwy", "jiwy"),
 }
 
 BIG = """version: 1
@@ -137,6 +138,43 @@ def test_both_sides_few_grounds_and_what_is_on_the_board(big: Path, capsys: pyte
     assert svg.words.count("pwm_h_bridge (part)") == 4
     assert "led value: GP25, the LED on the board" in svg.words
     assert svg.words.count("10 kΩ to ground") == 7
+
+
+@pytest.mark.parametrize("board", ["nucleo_f767zi", "nucleo_h743zi", "nucleo_h743zi2"])
+@pytest.mark.parametrize("robot", ["jiwy", "relbot"])
+def test_boards_with_many_contacts_are_drawn_too(board: str, robot: str, capsys: pytest.CaptureFixture[str]) -> None:
+    svg = Svg(draw(capsys, f"{board}_freertos_{robot}", "--what", "wiring"))
+    assert_readable(svg)
+    wires = [line for line in svg.lines if line.title]
+    signals = [line for line in wires if line.style != "earth"]
+    assert len(signals) == 10  # those of the ST-LINK's serial port are on the board
+    assert_lines_apart(wires)
+    assert any(word.endswith(", not to scale") for word in svg.words)
+    assert "PE9 D6" in svg.words
+    assert ("3V3" in svg.words) == (board != "nucleo_h743zi2")  # no open data describe its connectors
+    assert any(word.endswith("PD8, the serial port of the ST-LINK") for word in svg.words)
+
+
+def test_a_board_without_a_layout_gets_its_pins_in_rows(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    board = tmp_path / "boards" / "plain"
+    board.mkdir(parents=True)
+    board.joinpath("board.yaml").write_text(
+        "api: 1\nboard: plain\nsummary: a plain board\nsoc: rp2040\nsdks: {pico_sdk: pico}\npins: [0-4]\n",
+        encoding="utf-8",
+    )
+    robot = tmp_path / "robot.tcf"
+    robot.write_text(
+        "version: 1\ntarget: plain_bare_metal\nnode: me\ncommunication: {middleware: none}\n"
+        "components:\n  led: {kind: digital_output, pins: {value: 4}}\n",
+        encoding="utf-8",
+    )
+    monkeypatch.setenv("EPG_TARGETS_PATH", str(tmp_path))
+    svg = Svg(draw(capsys, str(robot), "--what", "wiring"))
+    assert_readable(svg)
+    assert {"0", "1", "2", "3", "4", "a plain board, not to scale"} <= set(svg.words)
+    assert svg.line("led value").points[0][0] > 0
 
 
 def test_the_contacts_show_supplies_and_the_names_on_the_board(capsys: pytest.CaptureFixture[str]) -> None:

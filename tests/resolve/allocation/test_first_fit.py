@@ -92,7 +92,7 @@ def test_only_the_wanted_signals_get_other_pins(tmp_path: Path) -> None:
     assert first_fit(found, PERIOD) == {}
     assert first_fit(found, PERIOD, [("motor", "direction_b")]) == {("motor", "direction_b"): "GP4"}
     one = first_fit(found, PERIOD, [("encoder", "b")], {("encoder", "a"): "GP20"})
-    assert one == {("encoder", "b"): "GP19"}
+    assert one == {("encoder", "b"): "GP21"}
     assert first_fit(found, PERIOD, [("encoder", "b")], {("encoder", "a"): "GP3"}) is None  # GP2 and GP4 are used
 
 
