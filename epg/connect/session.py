@@ -101,6 +101,11 @@ class Session:
         self._publish()
         threading.Thread(target=self._list_configurations, daemon=True).start()
 
+    @property
+    def actions(self) -> tuple[str, ...]:
+        """The names that :meth:`act` takes."""
+        return (*self._actions, *self._unlocked)
+
     def state(self) -> State:
         """The present state, without a look at the files."""
         with self._changed:

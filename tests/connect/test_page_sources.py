@@ -6,7 +6,10 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-PAGE = Path(__file__).resolve().parents[2] / "epg/connect/page"
+from epg.connect.session import Session
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGE = ROOT / "epg/connect/page"
 SCRIPTS = {path.name: path.read_text(encoding="utf-8") for path in sorted(PAGE.glob("*.js"))}
 
 
@@ -31,6 +34,13 @@ def test_each_script_is_loaded() -> None:
     assert [name for name in SCRIPTS if not re.search(rf'"(\./)?{re.escape(name)}"', everything)] == []
 
 
+def test_the_actions_are_those_of_a_session() -> None:
+    types = (PAGE / "types.d.ts").read_text(encoding="utf-8")
+    body = types.partition("interface Actions {\n")[2].partition("\n}\n")[0]
+    session = Session([], model=ROOT / "examples/jiwy/model")
+    assert sorted(re.findall(r"^  (\w+):", body, re.MULTILINE)) == sorted(session.actions)
+
+
 def test_each_class_of_the_style_sheet_is_in_a_script() -> None:
     """A script may also compose a class: ``dock-${ui.dock}``."""
     style = re.sub(r"/\*.*?\*/", "", (PAGE / "style.css").read_text(encoding="utf-8"), flags=re.DOTALL)
@@ -41,3 +51,8 @@ def test_each_class_of_the_style_sheet_is_in_a_script() -> None:
     words = set(re.findall(r"[a-zA-Z][\w-]*", used))
     composed = tuple(re.findall(r"([a-zA-Z][\w-]*-)\$\{", used))
     assert sorted(name for name in names if name not in words and not name.startswith(composed)) == []
+
+
+def test_each_variable_of_the_style_sheet_is_set_and_used() -> None:
+    style = (PAGE / "style.css").read_text(encoding="utf-8")
+    assert set(re.findall(r"(--[\w-]+)\s*:", style)) == set(re.findall(r"var\((--[\w-]+)", style))

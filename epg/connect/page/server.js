@@ -62,8 +62,13 @@ let before = Promise.resolve(); // the last action
 
 // Does an action after all earlier ones, so that a change that was made just before "save" is saved. Returns null, or the
 // error if it was refused: {message, hint}.
-/** @returns {Promise<Refusal | null>} */
-export function act(action, body = {}) {
+/**
+ * @template {keyof Actions} Name
+ * @param {Name} action
+ * @param {Actions[Name]} [body]
+ * @returns {Promise<Refusal | null>}
+ */
+export function act(action, body) {
   const done = before.then(() => send(action, body));
   before = done.catch(() => {}); // the caller reports the error
   return done;
@@ -75,7 +80,7 @@ async function send(action, body) {
     answer = await request(`api/${action}`, {
       method: "POST",
       headers: { "Content-Type": "application/json" },
-      body: JSON.stringify(body),
+      body: JSON.stringify(body ?? {}),
     });
     data = await answer.json();
   } catch {

@@ -294,6 +294,33 @@ interface Build {
   ask: { folder: string; commands: string[]; programs: string[]; key: string } | null;
 }
 
+type Nothing = Record<string, never>;
+
+/** The actions of a session, with the bodies of their requests. */
+interface Actions {
+  connect: { port: string; ends: Partial<End>[] };
+  /** Several ports in one step; ends of null remove a port. */
+  rewire: { changes: { port: string; ends: Partial<End>[] | null }[] };
+  disconnect: { port: string };
+  /** Without ports, all proposals are accepted. */
+  accept: { ports?: string[] };
+  leave_out: Nothing;
+  set: { changes: { path: string[]; value: unknown }[] };
+  unset: { paths: string[][] };
+  undo: Nothing;
+  redo: Nothing;
+  save: { anyway?: boolean };
+  reload: Nothing;
+  choose: { configuration: string };
+  open: { target: string };
+  overview: Nothing;
+  create: { folder: string; name: string; configuration: string; middleware?: string };
+  /** `run` is the key of the question that the user has agreed to; `anyway` builds although tools are missing. */
+  generate: { run?: string; anyway?: boolean };
+  cancel: Nothing;
+  done: Nothing;
+}
+
 /** The server's answer to a refused action. */
 interface Refusal {
   message: string;

@@ -31,7 +31,14 @@ export function openTab(tab) {
 }
 
 // Sends an action, and shows the error if it is refused. Returns true if it was done.
-export async function attempt(action, body = {}, port = null) {
+/**
+ * @template {keyof Actions} Name
+ * @param {Name} action
+ * @param {Actions[Name]} [body]
+ * @param {string | null} [port]
+ * @returns {Promise<boolean>}
+ */
+export async function attempt(action, body, port = null) {
   const error = await act(action, body);
   ui.refused = error ? { ...error, port } : null;
   if (error) say(`Refused: ${error.message}`);

@@ -60,21 +60,21 @@ def test_each_state_in_a_signature_has_a_type() -> None:
 
 def test_the_states_of_sessions_have_these_types(tmp_path: Path) -> None:
     """The compiler finds keys that are missing, unknown keys, and values of another type."""
-    opened, started = _states(tmp_path)
-    systems = [Session([], system=write_pair(tmp_path / "pair")).state()]
-    assert systems[0]["phase"] == "system" and systems[0]["system"]
-    assert {state["phase"] for state in opened} == {"connect"} and {state["phase"] for state in started} == {"choose"}
-    problem = _compiled(tmp_path, opened, started, systems)
-    assert problem == ""
-    wrong = json.loads(json.dumps(opened[0]))
+    system = Session([], system=write_pair(tmp_path / "pair"))
+    states = {
+        "SystemState": [system.state()],
+        "State": [*_opened(tmp_path), system.act("open", {"target": "leader"})],
+        "StartState": _started(),
+    }
+    assert [states[name][0]["phase"] for name in states] == ["system", "connect", "choose"]
+    assert _compiled(tmp_path, states) == ""
+    wrong = states["State"][0]
     wrong["draft"]["can_undo_it"] = wrong["draft"].pop("can_undo")
-    assert "'\"can_undo_it\"' does not exist in type 'Draft'" in _compiled(tmp_path, [wrong], [], [])
+    assert "'\"can_undo_it\"' does not exist in type 'Draft'" in _compiled(tmp_path, {"State": [wrong]})
 
 
-def _compiled(folder: Path, *states: list[dict[str, Any]]) -> str:
-    """The complaints about states with an open target, before a target is chosen, and of systems."""
-    kinds = zip(("State", "StartState", "SystemState"), states, strict=True)
-    lines = [f"const all{kind}: {kind}[] = {json.dumps(some)};\n" for kind, some in kinds]
+def _compiled(folder: Path, states: dict[str, list[dict[str, Any]]]) -> str:
+    lines = [f"const of{name}: {name}[] = {json.dumps(found)};\n" for name, found in states.items()]
     (folder / "states.ts").write_text("".join(lines), encoding="utf-8")
     settings = {
         "extends": str(HERE / "tsconfig.json"),
@@ -85,12 +85,18 @@ def _compiled(folder: Path, *states: list[dict[str, Any]]) -> str:
     return _run("typescript", "--project", folder)
 
 
-def _states(folder: Path) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
-    """States of sessions with an open target, and of one that has none at first."""
+def _started() -> list[dict[str, Any]]:
+    """States before a target is chosen: without configurations, which are read in the background, and with them."""
     session = Session([], model=ROOT / "examples/jiwy/model")
-    started = [session.state(), session.state()]
-    while not started[-1]["configurations"]:  # these are read in the background
-        started[-1] = session.wait(started[-1]["version"], 60)
+    states = [session.state(), session.state()]
+    while not states[-1]["configurations"]:
+        states[-1] = session.wait(states[-1]["version"], 60)
+    return states
+
+
+def _opened(folder: Path) -> list[dict[str, Any]]:
+    """States with an open target: with changes, mistakes, a conflict, hardware, and a build."""
+    session = Session([], model=ROOT / "examples/jiwy/model")
     body = {"folder": str(folder / "arm"), "name": "arm", "configuration": "host_jiwy"}
     opened = [session.act("create", body), session.act("disconnect", {"port": "pwm_tilt"})]
     ends = [{"reference": "pwm_pan", "scale": "1/2", "limits": ["-1", "1"]}]
@@ -115,4 +121,4 @@ def _states(folder: Path) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
     while state["build"]["state"] in ("idle", "running"):
         state = session.wait(state["version"], 60)
     assert state["build"]["messages"]
-    return [*opened, state], started
+    return [*opened, state]
