@@ -34,6 +34,14 @@ def test_each_script_is_loaded() -> None:
     assert [name for name in SCRIPTS if not re.search(rf'"(\./)?{re.escape(name)}"', everything)] == []
 
 
+def test_each_type_is_used() -> None:
+    types = (PAGE / "types.d.ts").read_text(encoding="utf-8")
+    used = re.sub(r"^(interface|type) \w+", "", types, flags=re.MULTILINE) + "".join(SCRIPTS.values())
+    names = set(re.findall(r"^(?:interface|type) (\w+)", types, re.MULTILINE)) - {"Document", "Element", "SystemState"}
+    assert len(names) > 20
+    assert sorted(name for name in names if not re.search(rf"\b{name}\b", used)) == []
+
+
 def test_the_actions_are_those_of_a_session() -> None:
     types = (PAGE / "types.d.ts").read_text(encoding="utf-8")
     body = types.partition("interface Actions {\n")[2].partition("\n}\n")[0]

@@ -90,7 +90,6 @@ function row(state, side, port, diagnostics) {
   const proposal = name in state.wires ? null : state.proposals[name];
   const worst = diagnostics.some(isError) ? " has-error" : "";
   const shown = ui.adding === name || ends.length === 0 ? [...ends, null] : ends;
-  const refused = ui.refused?.port === name ? { severity: "error", ...ui.refused } : null;
   return h(
     "li",
     {
@@ -125,7 +124,7 @@ function row(state, side, port, diagnostics) {
         h("span", "Accept "),
         h("b", proposal),
       ),
-    inline(refused ? [refused, ...diagnostics] : diagnostics),
+    inline(ui.refused?.port === name ? [{ severity: "error", ...ui.refused }, ...diagnostics] : diagnostics),
   );
 }
 

@@ -23,7 +23,7 @@ export function counted(diagnostics) {
 const LISTED = new Set(["unbound-input", "unbound-output"]);
 
 // The messages about a port or component, below its name.
-/** @param {Message[]} diagnostics */
+/** @param {Partial<Message>[]} diagnostics */
 export function inline(diagnostics) {
   if (diagnostics.length === 0) return null;
   return h(

@@ -327,12 +327,17 @@ interface Refusal {
   hint: string;
 }
 
-type Side = "sources" | "inputs" | "outputs" | "sinks";
-
 /** The user of a component port: an end of the model's port `port`. */
 interface User {
   port: string;
   end: End;
+}
+
+/** The end of a wire that the user holds: a port of the model, or the reference of a component port. */
+interface Held {
+  side: string;
+  name: string;
+  by: "pointer" | "keyboard";
 }
 
 // What the compiler's own types of the browser lack. Each element of the page is one of HTML or of SVG.

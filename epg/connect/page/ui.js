@@ -6,9 +6,9 @@ import { act } from "./server.js";
 export const ui = {
   tab: "problems",
   dock: "open", // "open", "large", "closed"
-  refused: null, // the error of the last action if it was refused: {message, hint, port}
+  refused: /** @type {(Refusal & { port: string }) | null} */ (null), // the error of the last action if it was refused
   adding: null, // the name of the output to which the user adds another end
-  held: null, // the end of a wire that the user holds: {side, name, by}, by "pointer" or "keyboard"
+  held: /** @type {Held | null} */ (null), // the end of a wire that the user holds
   dragged: false, // true right after a drag: the click event that follows must be ignored
   filter: { text: "", robot: "", fits: false },
   chosen: null, // the configuration chosen on the start page or in the dialog
@@ -21,6 +21,7 @@ export function whenDrawn(drawPage) {
 }
 
 // Changes some values of `ui`, and draws the page.
+/** @param {Partial<typeof ui>} values */
 export function change(values) {
   Object.assign(ui, values);
   draw();
