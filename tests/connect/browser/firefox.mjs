@@ -42,6 +42,7 @@ const acts = {
   focus: (selector) => page.focus(selector),
   press: (key) => page.keyboard.press(key),
   type: (text) => page.keyboard.type(text),
+  resize: (width, height) => page.setViewport({ width, height }),
   screenshot: async (path) => void (await page.screenshot({ path })),
   follow: async (link, expression) => {
     const created = new Promise((resolve) => browser.once("targetcreated", resolve));

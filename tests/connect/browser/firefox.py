@@ -76,6 +76,9 @@ class Firefox:
     def type(self, text: str) -> None:
         self._do("type", text)
 
+    def resize(self, width: int, height: int) -> None:
+        self._do("resize", width, height)
+
     def screenshot(self, file: Path) -> None:
         self._do("screenshot", str(file))
 

@@ -28,6 +28,7 @@ def started_firefox() -> Iterator[Firefox]:
 
 @pytest.fixture
 def firefox(started_firefox: Firefox) -> Iterator[Firefox]:
+    started_firefox.resize(1280, 800)
     yield started_firefox
     assert started_firefox.complaints() == []
 
@@ -86,6 +87,8 @@ def test_a_project_its_wires_and_its_pins(firefox: Firefox, model: Path) -> None
         assert "+  position_tilt: encoder_pan" in firefox.evaluate("document.querySelector('.diff').textContent")
         firefox.click("::-p-aria(Save)")
         firefox.until("document.querySelector('.saved').textContent === 'Saved'")
+        firefox.resize(400, 800)
+        assert firefox.evaluate("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
         bindings = model.parent / "camera_project/camera_project.bindings.yaml"
         assert "  position_tilt: encoder_pan\n" in bindings.read_text(encoding="utf-8")
 
