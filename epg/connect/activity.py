@@ -121,19 +121,26 @@ class Activity:
         with self._lock:
             self._reader = reader
 
+    def found_messages(self) -> list[Message]:
+        """The messages in the output of a program that has failed."""
+        return self._reader.finish(failed=True) if self._reader is not None else []
+
     def run(
         self,
         step: str,
         command: Sequence[str],
         folder: Path,
         environment: Mapping[str, str],
+        *,
         patience: float | None = None,
+        line: Callable[[str], None] | None = None,
     ) -> int:
         """Runs a program as the step called ``step``.  Returns its exit status.  Raises OSError.
 
-        ``patience`` is the time in seconds after which the program is ended; None for no limit.
+        ``patience`` is the time in seconds after which the program is ended; None for no limit.  ``line`` gets its
+        lines of output in place of :meth:`read`.
         """
-        process = Process(command, folder, environment, self.read)
+        process = Process(command, folder, environment, line or self.read)
         with self._lock:
             self._process, self._step, self._action = process, step, ""
             self._done = self._total = 0
@@ -176,7 +183,7 @@ class Activity:
         try:
             outcome = work()
         except UserError as problem:
-            outcome = Outcome("failed", [_message(each.data()) for each in problem.diagnostics])
+            outcome = Outcome("failed", [message_of(each.data()) for each in problem.diagnostics])
         except OSError as error:
             text = f"{error.filename or 'the program'}: {error.strerror or error}"
             outcome = Outcome("failed", [Message("error", text, id="run-failed")])
@@ -187,7 +194,7 @@ class Activity:
             self._changed()
 
 
-def _message(found: Mapping[str, Any]) -> Message:
+def message_of(found: Mapping[str, Any]) -> Message:
     """A diagnostic of the command line, from its JSON, as a message."""
     keys = ("severity", "message", "file", "line", "column", "hint", "id")
     return Message(**{key: found[key] for key in keys if found.get(key) is not None})

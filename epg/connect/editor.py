@@ -92,6 +92,7 @@ class Editor:
             return False
         if any(path.suffix == ".yaml" and path != self.job.request.bindings for path in changed):
             self._catalog = None
+        model, external = self.loaded.parts.model, self.external
         what = ", ".join(f"'{path.name}'" for path in changed[:3]) + (" and others" if changed[3:] else "")
         self._seen = bindings, tcf = self._snapshots()
         if (bindings.data, tcf.data) == (self.draft.bindings.data, self.draft.tcf.data):
@@ -104,6 +105,8 @@ class Editor:
         else:
             self._rebase(bindings, tcf, what)
         self._load()
+        if self.loaded.parts.model == model and all(path.is_dir() for path in changed):
+            self.external = external  # a folder that was searched for the model has a new entry, such as a build folder
         return True
 
     @property

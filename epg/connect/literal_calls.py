@@ -18,7 +18,7 @@ from epg.source import Span
 
 FILE = "CMakeLists.txt"
 MAX_FOLDERS = 200
-CALLS = ("epg_add_target", "epg_add_executable", "epg_add_system")
+CALLS = ("epg_add_target", "epg_add_executable", "epg_add_simulation", "epg_add_system")
 
 _TOKEN = re.compile(
     r"""(?P<space>[ \t\n;]+|\#\[(?P<c>=*)\[.*?\](?P=c)\]|\#(?!\[=*\[)[^\n]*)

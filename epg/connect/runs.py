@@ -1,38 +1,46 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The build of a session: the running one, or the last one."""
+"""What a session runs: builds and simulations, one at a time.  The last one of each is kept to show it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from epg.check.configuration import Configuration
+from epg.connect.activity import Activity
 from epg.connect.body import Refused
 from epg.connect.build.consent import Question, question_about
-from epg.connect.build.run import Build
+from epg.connect.build.run import Build, configuration_of
 from epg.connect.places import Places
 from epg.connect.projects import Job
+from epg.connect.run.find_simulation import Simulation, simulations_of
+from epg.connect.run.simulate import SimulationRun, commands_of
 from epg.source import Span
 
 
 class Runs:
-    """Starts, cancels and shows builds, one at a time.
+    """Starts, cancels and shows activities, one at a time.
 
     ``changed`` is called, by any thread, when there is something new to show.
     """
 
     def __init__(self, changed: Callable[[], None]) -> None:
         self._changed = changed
-        self._build = Build(changed)
-        self._question: Question | None = None
+        self._build, self._simulation = Build(changed), SimulationRun(changed)
+        self._questions: dict[str, dict[str, Any] | None] = {}
+
+    @property
+    def _activities(self) -> dict[str, Activity]:
+        return {"build": self._build, "simulation": self._simulation}
 
     @property
     def running(self) -> bool:
-        return self._build.is_running
+        return any(activity.is_running for activity in self._activities.values())
 
     def check_idle(self) -> None:
-        if self.running:
-            raise Refused("a build is running", "wait for it, or cancel it", 409)
+        for name, activity in self._activities.items():
+            if activity.is_running:
+                raise Refused(f"a {name} is running", "wait for it, or cancel it", 409)
 
     def ask(
         self, job: Job, configuration: Configuration | None, agreed: str, *, anyway: bool = False
@@ -41,37 +49,86 @@ class Runs:
 
         ``agreed`` is the key of a question that the user has answered with yes.
         """
-        self._question = question_about(job, configuration, anyway=anyway)
-        if self._question is not None and self._question.key == agreed:
-            self._question.agree()
-            self._question = None
-        return self._question.data() if self._question is not None else None
+        return self._ask("build", question_about(job, configuration, anyway=anyway), agreed, {})
+
+    def ask_to_simulate(
+        self, simulation: Simulation, agreed: str, wires: Mapping[str, str], *, anyway: bool = False
+    ) -> dict[str, Any] | None:
+        """The question before a simulation, as :meth:`ask`: its build and its run start programs.
+
+        ``wires`` are proposed wires to which the user must agree, too.
+        """
+        configuration = configuration_of(simulation.job.request)
+        question = question_about(simulation.job, configuration, commands_of(simulation), anyway=anyway)
+        return self._ask("simulation", question, agreed, wires)
+
+    def _ask(
+        self, name: str, question: Question | None, agreed: str, wires: Mapping[str, str]
+    ) -> dict[str, Any] | None:
+        if question is not None and question.key == agreed:
+            question.agree()
+            question = None
+        asked = {"folder": "", "commands": (), "programs": (), "key": ""} if question is None else question.data()
+        self._questions[name] = {**asked, "wires": dict(wires)} if question is not None or wires else None
+        return self._questions[name]
 
     def start(self, job: Job, *, anyway: bool = False) -> None:
-        """Configures and builds ``job``.  Raises Refused while another build runs."""
+        """Configures and builds ``job``.  Raises Refused while another activity runs."""
         self.check_idle()
         self._build = Build(self._changed)
         self._build.start(job, anyway=anyway)
 
+    def simulate(self, simulation: Simulation, *, anyway: bool = False) -> None:
+        """Builds and runs a simulation.  Raises Refused while another activity runs."""
+        self.check_idle()
+        self._simulation = SimulationRun(self._changed)
+        self._simulation.start(simulation, anyway=anyway)
+
     def cancel(self) -> None:
-        self._build.cancel()
+        for activity in self._activities.values():
+            if activity.is_running:
+                activity.cancel()
 
     def close(self) -> None:
-        """Cancels a running build, and waits at most 10 s for its end."""
+        """Cancels a running activity, and waits at most 10 s for its end."""
         self.cancel()
-        self._build.wait(10)
+        for activity in self._activities.values():
+            activity.wait(10)
 
     def forget(self) -> None:
-        self._build, self._question = Build(self._changed), None
+        self._build, self._simulation = Build(self._changed), SimulationRun(self._changed)
+        self._questions = {}
 
     def state(self, places: Places | None) -> dict[str, Any]:
-        """The state of the build for the page.  A message about the bindings gets the port that it is about."""
-        state = self._build.state() | {"ask": self._question.data() if self._question is not None else None}
-        for message in state["messages"] if places is not None else ():
-            assert places is not None
-            message["port"] = places.port_at(Span(message["file"], message["line"], message["column"]))
-        return state
+        """The state of each activity for the page.  A message about the bindings gets the port that it is about."""
+        states = {}
+        for name, activity in self._activities.items():
+            state = activity.state() | {"ask": self._questions.get(name)}
+            for message in state["messages"] if places is not None else ():
+                assert places is not None
+                message["port"] = places.port_at(Span(message["file"], message["line"], message["column"]))
+            states[name] = state
+        return states
 
-    def lines(self, start: int) -> list[str]:
-        """The printed lines from line ``start`` on."""
-        return self._build.lines(start)
+    def lines(self, name: str, start: int) -> list[str]:
+        """The printed lines of an activity from line ``start`` on.  Raises Refused."""
+        activity = self._activities.get(name)
+        if activity is None:
+            raise Refused(f"there is no log of '{name}'", status=404)
+        return activity.lines(start)
+
+    @property
+    def plot(self) -> str:
+        """The picture of the last simulation; empty if there is none."""
+        return self._simulation.plot
+
+
+def find_simulation(job: Job, name: str) -> Simulation:
+    """The simulation ``name`` of a target; the first one if ``name`` is empty.  Raises Refused."""
+    simulations = simulations_of(job)
+    if not simulations.found:
+        raise Refused(simulations.problem, simulations.hint, 409)
+    found = [each for each in simulations.found if name in ("", each.name)]
+    if not found:
+        raise Refused(f"there is no simulation '{name}'", status=404)
+    return found[0]

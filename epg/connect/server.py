@@ -237,7 +237,8 @@ class _Handler(BaseHTTPRequestHandler):
         if path == "api/state":
             self._json(owner.state(_integer(query, "after", 0)))
         elif path == "api/log":
-            self._json({"lines": owner.session.runs.lines(_integer(query, "from", 0))})
+            lines = owner.session.runs.lines(query.get("of", "build"), _integer(query, "from", 0))
+            self._json({"lines": lines})
         elif path == "api/source":
             self._json(owner.session.source(query.get("file", ""), _integer(query, "line", 1)))
         elif path.startswith("picture/") and path.endswith(".svg"):

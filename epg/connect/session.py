@@ -28,7 +28,8 @@ from epg.connect.files import Unsavable
 from epg.connect.overview import Overview
 from epg.connect.pictures import draw
 from epg.connect.projects import Job, find_jobs, system_jobs
-from epg.connect.runs import Runs
+from epg.connect.run.find_simulation import simulations_of
+from epg.connect.runs import Runs, find_simulation
 from epg.connect.start import Start
 from epg.connect.targets import Targets
 from epg.diagnostics import Diagnostics
@@ -74,6 +75,7 @@ class Session:
         self._overview = Overview(system, self._user_roots) if system is not None else None
         self._start = Start(model, self._configurations.catalog) if model is not None and not jobs else None
         self._editor = Editor(jobs[0]) if jobs else None
+        self._simulations: tuple[Job, State | None] | None = None
         self.runs = Runs(self._bump)
         self._actions: dict[str, Callable[[Body], None]] = {
             "connect": self._connect,
@@ -91,6 +93,7 @@ class Session:
             "open": self._open,
             "overview": self._show_overview,
             "generate": self._generate,
+            "simulate": self._simulate,
             "done": lambda body: self.ended.set(),
         }
         self._unlocked: dict[str, Callable[[Body], None]] = {
@@ -111,7 +114,7 @@ class Session:
         with self._changed:
             places = self._editor.loaded.places if self._editor is not None else None
             shown = {"version": self._version, "epg": epg.__version__, **self._shown}
-            return shown | {"build": self.runs.state(places)}
+            return shown | self.runs.state(places)
 
     def wait(self, after: int, timeout: float) -> State:
         """The state, once its version differs from ``after``, the session ends, or ``timeout`` seconds have passed."""
@@ -150,7 +153,9 @@ class Session:
         """The picture ``name`` of the open target as SVG, or the wiring of ``configuration``.  Raises Refused."""
         editor = self._editor
         svg = None
-        if configuration:
+        if name == "simulation":
+            svg = self.runs.plot or None
+        elif configuration:
             svg = self._configurations.picture(configuration) if name == "wiring" else None
         elif editor is None and self._overview is not None:
             svg = self._overview.picture() if name == "system" else None
@@ -305,6 +310,43 @@ class Session:
             self._publish()
 
     def _generate(self, body: Body) -> None:
+        self._check_ready()
+        anyway = boolean(body, "anyway")
+        if self._ask(text(body, "run", ""), anyway=anyway) is None:
+            self._save({})
+            self.runs.start(self._opened().job, anyway=anyway)
+
+    def _simulate(self, body: Body) -> None:
+        """Builds the target for this computer, and runs it through a scenario in simulated time.
+
+        If only wires are missing that EPG proposes, the user can agree to them, too: "accept".
+        """
+        self.runs.check_idle()
+        wires = self._missing_wires()
+        if not wires:
+            self._check_ready()
+        simulation = find_simulation(self._opened().job, text(body, "simulation", ""))
+        anyway, accepted = boolean(body, "anyway"), boolean(body, "accept")
+        left = {} if accepted else wires
+        ask = self.runs.ask_to_simulate(simulation, text(body, "run", ""), left, anyway=anyway)
+        if ask is not None:
+            return
+        if wires:
+            self._accept({})
+            self._publish()
+            self._check_ready()
+        self._save({})
+        self.runs.simulate(simulation, anyway=anyway)
+
+    def _missing_wires(self) -> dict[str, str]:
+        """The proposed wires, if they correct all errors of the target; else none."""
+        proposals: dict[str, str] = self._shown.get("proposals", {})
+        errors = [problem for problem in self._shown["diagnostics"] if problem["severity"] == "error"]
+        proposed = all(problem["id"] == "unbound-input" and problem["port"] in proposals for problem in errors)
+        return proposals if errors and proposed else {}
+
+    def _check_ready(self) -> None:
+        """Raises Refused if the target cannot be built now."""
         self.runs.check_idle()
         self._opened().check_conflict()
         job = self._opened().job
@@ -317,10 +359,6 @@ class Session:
         if count:
             what = "is an error" if count == 1 else f"are {count} errors"
             raise Refused(f"there {what}: the project cannot be built", "correct the errors in the messages", 409)
-        anyway = boolean(body, "anyway")
-        if self._ask(text(body, "run", ""), anyway=anyway) is None:
-            self._save({})
-            self.runs.start(self._opened().job, anyway=anyway)
 
     def _ask(self, agreed: str, *, anyway: bool) -> dict[str, Any] | None:
         editor = self._opened()
@@ -387,11 +425,30 @@ class Session:
             else:
                 assert self._start is not None
                 shown, model, project = self._start.show(), self._start.model, None
+            shown["simulations"] = self._found_simulations()
             ready = self._configurations.ready
             ready = ready and shown["phase"] != "system"
             shown["configurations"] = self._configurations.entries(model, project) if ready else []
             self._shown = shown
             self._bump()
+
+    def _found_simulations(self) -> State | None:
+        """The simulations of the open target; None while they are searched, which takes some tenths of a second."""
+        job = self._editor.job if self._editor is not None else None
+        if job is None:
+            return None
+        if self._simulations is None or self._simulations[0] is not job:
+            self._simulations = (job, None)
+            threading.Thread(target=self._find_simulations, args=(job,), daemon=True).start()
+        return self._simulations[1]
+
+    def _find_simulations(self, job: Job) -> None:
+        found = simulations_of(job)
+        listed = [{"name": each.name, "scenario": str(each.scenario)} for each in found.found]
+        with self._changed:
+            if self._editor is not None and self._editor.job is job:
+                self._simulations = (job, {"found": listed, "problem": found.problem, "hint": found.hint})
+                self._publish()
 
     def _bump(self) -> None:
         with self._changed:

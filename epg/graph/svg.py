@@ -54,6 +54,7 @@ text { font-family: ui-monospace, 'DejaVu Sans Mono', Menlo, Consolas, monospace
 .hit { fill: transparent; cursor: pointer; }
 .line { fill: none; stroke: #1f2328; stroke-width: 1.4; }
 .earth { fill: none; stroke: #1f2328; stroke-width: 1.6; stroke-dasharray: 6 3; }
+.grid { fill: none; stroke: #d1d9e0; }
 .faint { fill: #59636e; }
 .bold { font-weight: bold; }
 """
@@ -77,6 +78,7 @@ text { fill: #f0f6fc; }
 .wrong { stroke: #ff7b72; }
 .chosen { stroke: #58a6ff; }
 .line, .earth { stroke: #f0f6fc; }
+.grid { stroke: #3d444d; }
 .faint { fill: #9198a1; }
 """
 

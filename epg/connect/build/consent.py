@@ -17,6 +17,7 @@ import json
 import os
 import shlex
 import subprocess
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -56,8 +57,16 @@ class Question:
             file.write_text("".join(f"{key}\n" for key in [*_lines(file), self.key][-KEPT:]), encoding="ascii")
 
 
-def question_about(job: Job, configuration: Configuration | None, *, anyway: bool = False) -> Question | None:
+def question_about(
+    job: Job,
+    configuration: Configuration | None,
+    after: Sequence[tuple[str, ...]] = (),
+    *,
+    anyway: bool = False,
+) -> Question | None:
     """The question to ask before ``job`` is built; ``anyway`` as for :func:`make_plan`.
+
+    ``after`` are commands that run after the build, and that start what it has made.
 
     None if there is nothing to run, or the user has agreed before.  This runs no program that a build folder names.
     """
@@ -65,12 +74,13 @@ def question_about(job: Job, configuration: Configuration | None, *, anyway: boo
     if not plan.steps:
         return None
     programs = {step.command[0] for step in plan.steps} | {plan.build_program}
+    programs |= {command[0] for command in after}
     key = json.dumps(
-        [os.path.realpath(plan.source), os.path.realpath(plan.build), sorted(programs), _number(plan.source)]
+        [os.path.realpath(plan.source), os.path.realpath(plan.build), sorted(programs), _number(plan.source), *after]
     )
     question = Question(
         plan.steps[0].folder,
-        tuple(_shown(step.command) for step in plan.steps),
+        tuple(_shown(command) for command in (*(step.command for step in plan.steps), *after)),
         tuple(sorted(programs)),
         hashlib.sha256(key.encode("utf-8", "surrogatepass")).hexdigest(),
     )

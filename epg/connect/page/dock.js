@@ -8,6 +8,7 @@ import { hardware } from "./hardware.js";
 import { icon } from "./icons.js";
 import { picture } from "./pictures.js";
 import { problemList } from "./problems.js";
+import { simulationPanel, simulationTitle } from "./simulation.js";
 import { connectionTable } from "./system.js";
 import { change, openTab, ui } from "./ui.js";
 
@@ -26,6 +27,7 @@ function tabs(state) {
   return [
     problems,
     { name: "build", title: buildTitle(state), content: buildPanel },
+    { name: "simulation", title: simulationTitle(state), content: simulationPanel },
     { name: "hardware", title: "Pins and peripherals", content: hardware },
     "wiring" in pictures && { name: "wiring", title: "Pinout", content: picture },
     { name: "application", title: "Application", content: picture },

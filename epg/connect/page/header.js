@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The head of the page: project and target, the count of problems, "saved" or not, and the buttons for actions.
 
+import { running } from "./activity.js";
 import { generate } from "./build.js";
 import { chooseTarget } from "./chooser.js";
 import { closeDialog, openDialog } from "./dialog.js";
@@ -8,8 +9,11 @@ import { h } from "./dom.js";
 import { icon } from "./icons.js";
 import { counted, shortFile } from "./problems.js";
 import { current } from "./server.js";
+import { simulate } from "./simulation.js";
 import { backToSystem } from "./system.js";
 import { attempt, openTab } from "./ui.js";
+
+const STOP = { build: "Cancel", simulation: "Stop" };
 
 /** @param {State} state */
 export function header(state) {
@@ -23,8 +27,7 @@ export function header(state) {
     const name = h("h1.title", { key: "title", title: state.project.folder }, `System ${state.project.name}`);
     return [brand, name, problemsButton(state), space, close];
   }
-  const { draft, build } = state;
-  const running = build.state === "running";
+  const { draft } = state;
   return [
     brand,
     state.project.system && backButton(state.project.system),
@@ -44,9 +47,16 @@ export function header(state) {
       button("Redo", "Ctrl+Y", draft.can_redo, () => attempt("redo")),
     ),
     button("Save", "Ctrl+S", draft.changed && !draft.conflict, () => attempt("save")),
-    running
-      ? h("button", { key: "generate", class: "primary", onclick: () => attempt("cancel") }, "Cancel")
-      : h("button", { key: "generate", class: "primary", onclick: generate }, "Generate"),
+    running(state)
+      ? h("button", { key: "generate", class: "primary", onclick: () => attempt("cancel") }, STOP[running(state)])
+      : [
+          h("button", { key: "simulate", title: "Run it on this computer", onclick: simulate }, "Simulate"),
+          h(
+            "button",
+            { key: "generate", class: "primary", title: "Build the firmware", onclick: generate },
+            "Generate",
+          ),
+        ],
     close,
   ];
 }

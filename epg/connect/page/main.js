@@ -6,7 +6,8 @@
 // again with h(), and render() changes only the differences (dom.js).
 
 import { bars } from "./bars.js";
-import { followBuild } from "./build.js";
+import { followActivities } from "./activity.js";
+import { buildOutcome } from "./build.js";
 import { componentColumn } from "./components.js";
 import { drawDialog } from "./dialog.js";
 import { dock } from "./dock.js";
@@ -16,6 +17,7 @@ import { drawStops, isKnown, listenForPresses } from "./handles.js";
 import { header } from "./header.js";
 import { modelHead, modelPorts } from "./ports.js";
 import { current, follow, hasEnded } from "./server.js";
+import { simulationOutcome } from "./simulation.js";
 import { startPage } from "./start.js";
 import { drawLanes, systemPage } from "./system.js";
 import { attempt, draw, ui, whenDrawn } from "./ui.js";
@@ -108,6 +110,6 @@ window.addEventListener("beforeunload", (event) => {
 listenForDrags(part("main"));
 listenForPresses(part("main"));
 follow(() => {
-  if (current() && !hasEnded()) followBuild(current());
+  if (current() && !hasEnded()) followActivities(current(), { build: buildOutcome, simulation: simulationOutcome });
   draw();
 });

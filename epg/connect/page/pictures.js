@@ -19,6 +19,22 @@ export function picture(state, name) {
   ];
 }
 
+// The picture at `address`, or an older one until it is fetched.
+/**
+ * @param {string} key
+ * @param {string} address
+ * @param {string} name
+ * @param {string} alt
+ */
+export function pictureAt(key, address, name, alt) {
+  const shown = newest(key, address);
+  if (!shown) return null;
+  return [
+    h("a", { key: "open", href: shown, target: "_blank", rel: "noopener" }, "Open in a new tab"),
+    h("img.picture", { key: name, alt, src: shown }),
+  ];
+}
+
 const pictures = new Map(); // project and name -> {wanted, shown}: the address to fetch, and the local address of the shown version
 
 // Returns the local address of the newest fetched version of a picture, null before the first one. Starts to fetch the

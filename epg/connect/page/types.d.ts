@@ -83,6 +83,9 @@ interface StartState {
   /** Empty until the server has read them. */
   configurations: Configuration[];
   build: Build;
+  simulation: SimulationRun;
+  /** Null while EPG looks for them. */
+  simulations: Simulations | null;
 }
 
 interface Project {
@@ -277,7 +280,8 @@ interface Configuration {
   picture: boolean;
 }
 
-interface Build {
+/** What a build, a simulation and other runs have in common. */
+interface Activity {
   state: "idle" | "running" | "done" | "failed" | "cancelled";
   step: string;
   action: string;
@@ -285,13 +289,61 @@ interface Build {
   total: number;
   seconds: number;
   messages: Message[];
-  products: { path: string; what: string }[];
-  /** True if nothing was started because tools are missing that the project's CMake files may still find. */
-  can_try: boolean;
   /** The number of lines of the log. */
   lines: number;
-  /** The question before the first build in a folder. */
-  ask: { folder: string; commands: string[]; programs: string[]; key: string } | null;
+  /** True if nothing was started because tools are missing that the project's CMake files may still find. */
+  can_try: boolean;
+  /** The question before the first run of these commands. */
+  ask: Ask | null;
+}
+
+interface Ask {
+  folder: string;
+  /** Empty if the user has agreed to them before. */
+  commands: string[];
+  programs: string[];
+  key: string;
+  /** Proposed wires that must be connected first: for each port of the model the port of a component. */
+  wires: Record<string, string>;
+}
+
+interface Build extends Activity {
+  products: { path: string; what: string }[];
+}
+
+interface SimulationRun extends Activity {
+  /** Null until the program has run to its end. */
+  result: SimulationResult | null;
+}
+
+/** Values that are not finite are null. */
+interface SimulationResult {
+  passed: boolean;
+  /** The reason why the run ended in a wrong state; empty if it did not. */
+  problem: string;
+  hint: string;
+  checks: { text: string; value: number | null; limit: number; unit: string; passed: boolean }[];
+  windows: {
+    axis: string;
+    unit: string;
+    start: number;
+    end: number;
+    rms: number | null;
+    largest: number | null;
+  }[];
+  cycles: number;
+  duration: number;
+  folder: string;
+  files: string[];
+  /** Differs between two pictures. */
+  picture: string;
+}
+
+/** The simulations of the target. Without one, "problem" is the reason. */
+interface Simulations {
+  found: { name: string; scenario: string }[];
+  problem: string;
+  hint: string;
 }
 
 type Nothing = Record<string, never>;
@@ -317,6 +369,8 @@ interface Actions {
   create: { folder: string; name: string; configuration: string; middleware?: string };
   /** `run` is the key of the question that the user has agreed to; `anyway` builds although tools are missing. */
   generate: { run?: string; anyway?: boolean };
+  /** "accept" agrees to the proposed wires of the question. */
+  simulate: { run?: string; anyway?: boolean; accept?: boolean; simulation?: string };
   cancel: Nothing;
   done: Nothing;
 }

@@ -12,7 +12,6 @@ export const ui = {
   dragged: false, // true right after a drag: the click event that follows must be ignored
   filter: { text: "", robot: "", fits: false },
   chosen: null, // the configuration chosen on the start page or in the dialog
-  logOpen: false,
 };
 
 export let draw = () => {};

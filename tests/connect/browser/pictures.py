@@ -44,6 +44,7 @@ def take_pictures(folder: Path = PICTURES) -> None:
         _start(page, folder)
         _wires(page, epg, folder)
         _build(page, epg, folder)
+        _simulate(page, folder)
         browser.close()
     shutil.rmtree(place, ignore_errors=True)
 
@@ -86,6 +87,14 @@ def _build(page: Any, epg: Served, folder: Path) -> None:
     page.locator(".outcome.done").wait_for(timeout=600_000)
     page.wait_for_timeout(200)
     _take(page, folder, "build")
+
+
+def _simulate(page: Any, folder: Path) -> None:
+    page.get_by_role("button", name="Simulate", exact=True).click()
+    page.get_by_role("dialog", name="Run these commands?").get_by_role("button", name="Run").click()
+    page.locator(".panel-simulation img.picture").wait_for(timeout=600_000)
+    page.get_by_role("button", name="Larger").click()
+    _take(page, folder, "simulation")
 
 
 def _end(epg: Served, port: str, **end: Any) -> None:
