@@ -93,14 +93,25 @@ def test_a_project_its_wires_and_its_pins(firefox: Firefox, model: Path) -> None
         assert "  position_tilt: encoder_pan\n" in bindings.read_text(encoding="utf-8")
 
 
-def test_a_build(firefox: Firefox, tmp_path: Path) -> None:
+@pytest.mark.parametrize("mistake", ["", 'message(FATAL_ERROR "not today")\n'], ids=["build", "mistake"])
+def test_generate(mistake: str, firefox: Firefox, tmp_path: Path) -> None:
     folder = tmp_path / secrets.token_hex(4)
     copy_jiwy(folder)
+    cmake = folder / "CMakeLists.txt"
+    cmake.write_text(mistake + cmake.read_text(encoding="utf-8"), encoding="utf-8")
     with Served(folder) as epg:
         firefox.open(epg.address)
         firefox.click("::-p-aria(Generate)")
         firefox.until("document.querySelector('dialog[open] pre')?.textContent.includes('cmake -S')")
         firefox.click("dialog .primary")
+        if mistake:
+            firefox.until("document.querySelector('.outcome.failed')", 60)
+            firefox.click(".problem-list .problem")
+            firefox.until("document.querySelector('dialog .line.here')?.textContent.includes('not today')")
+            firefox.press("Escape")
+            firefox.click("details.log summary")
+            firefox.until("document.querySelector('.log pre').textContent.includes('not today')")
+            return
         firefox.until("document.querySelector('.outcome.done')", 120)
         paths = firefox.evaluate("[...document.querySelectorAll('.product-path code')].map((each) => each.textContent)")
         assert paths and all(Path(path).is_file() for path in paths)
