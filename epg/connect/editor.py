@@ -15,6 +15,7 @@ from epg.connect.draft import Draft, Operation
 from epg.connect.files import Snapshot, Watch, read_snapshot, save
 from epg.connect.forms import forms_of
 from epg.connect.loaded import Models, load, tcf_path
+from epg.connect.pinout import signals_view
 from epg.connect.projects import Job
 from epg.connect.unused import unused_parts
 from epg.connect.view import view_of
@@ -153,6 +154,10 @@ class Editor:
             "project": {"name": self.job.request.name, "folder": str(self._folder()), "files": self._files()},
             **view_of(self.loaded),
             "forms": forms_of(self.loaded, self.catalog, owns_tcf=self.owns_tcf),
+            "pins": {
+                "signals": signals_view(self.loaded),
+                "why_not": "" if self.owns_tcf else self.project().fixed,
+            },
             "unused": [".".join(part) for part in self.unused_parts()],
             "draft": {
                 "changed": self.draft.changed,

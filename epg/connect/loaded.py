@@ -6,13 +6,14 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
 
 from epg.catalog.catalog import Catalog, Kind, Target, load_catalog
 from epg.catalog.parameter import typed_value
 from epg.check.bindings import Conversion
-from epg.check.configuration import Component, check_components
+from epg.check.configuration import Component, Configuration, check_components
 from epg.check.merge import apply_settings, merge_chain
 from epg.check.topic_ends import is_made_for
 from epg.connect.files import Watch
@@ -25,9 +26,11 @@ from epg.edit.bindings import ends_of
 from epg.models import Model, load_model
 from epg.models.folders import searched_folders
 from epg.models.neighbours import Neighbours
-from epg.project import Parts, Request, hardware_of, load_parts
+from epg.project import Parts, Request, hardware_of, load_configuration, load_parts
 from epg.resolve.allocation import Hardware
+from epg.resolve.first_fit import Signal
 from epg.resolve.matching import Match, match_ports
+from epg.resolve.pin_options import PinOption, pin_options
 from epg.resolve.resolve import allocate_hardware
 from epg.source import Span, YamlNode
 
@@ -92,6 +95,20 @@ class Loaded:
         return found
 
     @cached_property
+    def wired(self) -> Configuration | None:
+        """The configuration, also if components have no pins yet; None if other values of the ``.tcf`` have errors."""
+        if self.parts.configuration is not None:
+            return self.parts.configuration
+        return load_configuration(self.request, self.catalog, Diagnostics(), pins_required=False)
+
+    @property
+    def period(self) -> Fraction | None:
+        """The control period in seconds; None if it is not known yet."""
+        model = self.parts.model
+        stated = self.wired.control.period if self.wired is not None else None
+        return stated or (model.step if model is not None else None)
+
+    @cached_property
     def hardware(self) -> Hardware:
         """The assignments of the components' claims; without an application, those that follow from the ``.tcf``."""
         configuration, application = self.parts.configuration, self.parts.application
@@ -99,8 +116,19 @@ class Loaded:
             return hardware_of(application)
         if configuration is None:
             return {}
-        period = configuration.control.period or (self.parts.model.step if self.parts.model is not None else None)
-        return allocate_hardware(configuration, period, Diagnostics()) or {}
+        return allocate_hardware(configuration, self.period, Diagnostics()) or {}
+
+    def pin_options(self, signal: Signal) -> tuple[PinOption, ...]:
+        """The pins of the board for ``signal``; empty if there is no such signal."""
+        if self.wired is None:
+            return ()
+        if signal not in self._pin_options:
+            self._pin_options[signal] = pin_options(self.wired, self.period, signal)
+        return self._pin_options[signal]
+
+    @cached_property
+    def _pin_options(self) -> dict[Signal, tuple[PinOption, ...]]:
+        return {}
 
     @cached_property
     def matches(self) -> Mapping[str, Match]:

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from epg.connect.loaded import Loaded
+from epg.connect.pinout import draw_pinout
 from epg.connect.view import pictures
 from epg.emit.application import Emitter
 from epg.graph.application import draw_application
 from epg.graph.schedule import draw_schedule
-from epg.graph.wiring import draw_wiring
 
 
 def draw(loaded: Loaded, name: str, title: str) -> str | None:
@@ -16,9 +16,7 @@ def draw(loaded: Loaded, name: str, title: str) -> str | None:
     if not pictures(loaded).get(name):
         return None
     if name == "wiring":
-        configuration = loaded.parts.configuration
-        assert configuration is not None
-        return draw_wiring(configuration.target, configuration.components, loaded.hardware, title)
+        return draw_pinout(loaded, title)
     application = loaded.parts.application
     assert application is not None
     if name == "schedule":

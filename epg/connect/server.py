@@ -241,6 +241,11 @@ class _Handler(BaseHTTPRequestHandler):
             self._json({"lines": lines})
         elif path == "api/source":
             self._json(owner.session.source(query.get("file", ""), _integer(query, "line", 1)))
+        elif path == "api/pins":
+            self._json(owner.session.pin_options(query.get("component", ""), query.get("signal", "")))
+        elif path == "picture/pinout.svg":
+            svg = owner.session.pinout(query.get("component", ""), query.get("signal", ""))
+            self._send(200, TYPES[".svg"], svg.encode())
         elif path.startswith("picture/") and path.endswith(".svg"):
             name = path.removeprefix("picture/").removesuffix(".svg")
             svg = owner.session.picture(name, query.get("configuration", ""))

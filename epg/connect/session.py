@@ -27,6 +27,7 @@ from epg.connect.excerpt import excerpt
 from epg.connect.files import Unsavable
 from epg.connect.overview import Overview
 from epg.connect.pictures import draw
+from epg.connect.pinout import chosen_pin, draw_pinout, first_pins, options_view
 from epg.connect.projects import Job, find_jobs, system_jobs
 from epg.connect.run.find_simulation import simulations_of
 from epg.connect.runs import Runs, find_simulation
@@ -85,6 +86,8 @@ class Session:
             "leave_out": self._leave_out,
             "set": self._set,
             "unset": self._unset,
+            "choose_pin": self._choose_pin,
+            "first_pins": self._first_pins,
             "undo": lambda body: self._opened().undo(),
             "redo": lambda body: self._opened().redo(),
             "save": self._save,
@@ -148,6 +151,21 @@ class Session:
             self._publish()  # one of the two files may have been saved
             raise Refused(str(problem), status=409) from None
         return self.state()
+
+    def pinout(self, component: str, signal: str) -> str:
+        """The board's drawing for the page: with ``component``, it shows the contacts that can have its ``signal``."""
+        with self._changed:
+            editor = self._opened()
+            title = editor.job.request.name
+            svg = draw_pinout(editor.loaded, title, (component, signal) if component else None, for_page=True)
+        if svg is None:
+            raise Refused("there is no such picture", "the messages show the reason", 404)
+        return svg
+
+    def pin_options(self, component: str, signal: str) -> list[dict[str, Any]]:
+        """The pins of the board for a signal: those that fit, and the reasons why others do not.  Raises Refused."""
+        with self._changed:
+            return options_view(self._opened().loaded, (component, signal))
 
     def picture(self, name: str, configuration: str = "") -> str:
         """The picture ``name`` of the open target as SVG, or the wiring of ``configuration``.  Raises Refused."""
@@ -246,6 +264,18 @@ class Session:
         if not isinstance(paths, list):
             raise Refused("'paths' must be a list of lists of keys")
         self._of_the_user().edit(tuple(RemoveValue(keys(path)) for path in paths))
+
+    def _choose_pin(self, body: Body) -> None:
+        """Gives a signal of a component another pin.  Signals that must be beside it follow."""
+        editor = self._of_the_user()
+        signal = text(body, "component"), text(body, "signal")
+        editor.edit(chosen_pin(editor.loaded, signal, text(body, "pin")))
+
+    def _first_pins(self, body: Body) -> None:
+        """Gives the first pins that fit to "signals", by default to all signals without a pin."""
+        editor = self._of_the_user()
+        wanted = [(text(each, "component"), text(each, "signal")) for each in bodies(body, "signals")] if body else None
+        editor.edit(first_pins(editor.loaded, wanted))
 
     def _of_the_user(self) -> Editor:
         """The editor.  Raises Refused if the open target uses a ``.tcf`` of EPG itself."""

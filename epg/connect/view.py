@@ -61,13 +61,13 @@ def view_of(loaded: Loaded) -> Data:
 def pictures(loaded: Loaded) -> dict[str, bool]:
     """The pictures of this target: True for those that can be drawn, False for those that errors prevent.
 
-    A board without a layout has no pinout.
+    A target without pins has no pinout.  The pinout also shows conflicts between pins.
     """
-    configuration, whole = loaded.parts.configuration, loaded.parts.application is not None
+    whole = loaded.parts.application is not None
     shown = {"application": whole, "schedule": whole}
-    if configuration is not None and configuration.target.board.layout is None:
+    if loaded.target is not None and loaded.target.board.layout is None:
         return shown
-    return {"wiring": configuration is not None and bool(loaded.hardware), **shown}
+    return {"wiring": loaded.wired is not None, **shown}
 
 
 def model_view(model: Model) -> Data:

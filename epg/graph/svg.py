@@ -51,7 +51,8 @@ text { font-family: ui-monospace, 'DejaVu Sans Mono', Menlo, Consolas, monospace
 .cross { fill: none; stroke: #59636e; stroke-width: 1.4; }
 .wrong { fill: none; stroke: #d1242f; stroke-width: 2.4; }
 .chosen { fill: none; stroke: #0969da; stroke-width: 2; }
-.hit { fill: transparent; cursor: pointer; }
+.hit { fill: transparent; cursor: pointer; touch-action: none; }
+.over { stroke: #0969da; stroke-width: 2.4; }
 .line { fill: none; stroke: #1f2328; stroke-width: 1.4; }
 .earth { fill: none; stroke: #1f2328; stroke-width: 1.6; stroke-dasharray: 6 3; }
 .grid { fill: none; stroke: #d1d9e0; }

@@ -394,6 +394,12 @@ def _side(picture: Picture, layout: Layout, frame: _Frame, side: str, parts: Seq
         if drives(part.component):
             picture.text(tx, top + high - 9, _RESISTOR, anchor, _SMALL, "faint")
     _wires(picture, frame, sign, near, edge, wires)
+    for wire in wires if for_page else ():
+        component, _, signal = wire.title.partition(":")[0].partition(" ")
+        if wire.label:
+            left = sign * (frame.inside + 14) if sign > 0 else -near
+            data = {"signal": f"{component}.{signal}"}
+            picture.hit(left, wire.place * frame.pitch - 14, near - frame.inside - 14, 18, data, wire.title)
 
 
 def _lines(parts: Sequence[_Part], last: int, frame: _Frame) -> list[int]:
@@ -509,7 +515,7 @@ def _legend(choice: Choice | None) -> list[tuple[str, str]]:
     """The states of contacts with a pin, and their meanings."""
     result = [("used", "used: the colour is that of the wire"), ("wrong", "used twice"), ("contact", _FREE)]
     if choice is not None:
-        result += [("fits", f"free, and can be {choice.title}"), ("unfit", f"cannot be {choice.title}")]
+        result += [("fits", f"can be {choice.title}"), ("unfit", f"cannot be {choice.title}")]
     return [*result, ("reserved", "reserved: used by the board itself, or by other code")]
 
 

@@ -106,6 +106,8 @@ class _Options:
             return PinOption(pin, "unfit", reason)
         others = [f"{name} moves to {new}" for (_, name), new in changes.items() if (_, name) != self.signal]
         told = [onboard.title] if onboard else []
+        if self.target.platform.has_nodes and pin in board.devicetree.get(board.console, ()):
+            told.append("the console of Zephyr uses it now, and would be off")
         return PinOption(pin, "fits", ", ".join([*told, *others]), changes=changes)
 
     def _tried(self, pin: str, resource_class: ResourceClass) -> tuple[dict[Signal, str], str]:

@@ -7,6 +7,7 @@ import { h } from "./dom.js";
 import { hardware } from "./hardware.js";
 import { icon } from "./icons.js";
 import { picture } from "./pictures.js";
+import { pinout } from "./pinout.js";
 import { problemList } from "./problems.js";
 import { simulationPanel, simulationTitle } from "./simulation.js";
 import { connectionTable } from "./system.js";
@@ -29,7 +30,7 @@ function tabs(state) {
     { name: "build", title: buildTitle(state), content: buildPanel },
     { name: "simulation", title: simulationTitle(state), content: simulationPanel },
     { name: "hardware", title: "Pins and peripherals", content: hardware },
-    "wiring" in pictures && { name: "wiring", title: "Pinout", content: picture },
+    "wiring" in pictures && { name: "wiring", title: "Pinout", content: pinout },
     { name: "application", title: "Application", content: picture },
     { name: "schedule", title: "Schedule", content: picture },
     { name: "changes", title: state.draft.diff ? "Changes ●" : "Changes", content: changes },

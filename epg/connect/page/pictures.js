@@ -15,7 +15,7 @@ export function picture(state, name) {
   return [
     h("a", { key: "open", href: shown, target: "_blank", rel: "noopener" }, "Open in a new tab"),
     !isNew && h("p.muted", { key: "old" }, "The files have errors. This is the picture before them."),
-    h(isNew ? "img.picture" : "img.picture.old", { key: name, alt: description(state, name), src: shown }),
+    h(isNew ? "img.picture" : "img.picture.old", { key: name, alt: description(name), src: shown }),
   ];
 }
 
@@ -33,6 +33,13 @@ export function pictureAt(key, address, name, alt) {
     h("a", { key: "open", href: shown, target: "_blank", rel: "noopener" }, "Open in a new tab"),
     h("img.picture", { key: name, alt, src: shown }),
   ];
+}
+
+// A link that opens the picture alone, to print it. Null until it is fetched.
+/** @param {State} state */
+export function pictureLink(state, name) {
+  const shown = newest(`${state.project.name} ${name}`, `picture/${name}.svg?version=${state.version}`);
+  return shown && h("a", { key: "open", href: shown, target: "_blank", rel: "noopener" }, "Open in a new tab");
 }
 
 const pictures = new Map(); // project and name -> {wanted, shown}: the address to fetch, and the local address of the shown version
@@ -94,14 +101,9 @@ async function fetchWiring(image) {
   }
 }
 
-/** @param {State} state */
-function description(state, name) {
+function description(name) {
   if (name === "system") return "The targets and their connections. The tab Connections contains the same as a table.";
   if (name === "application")
     return "Topics, components, conversions and ports of the application. The lists of ports contain the same.";
-  if (name === "schedule") return "One control cycle: the work between two ticks, in order.";
-  const wires = state.components
-    .filter((each) => each.where?.length)
-    .map((each) => `${each.name}: ${each.where.join(", ")}`);
-  return `The board seen from above, with the components at its contacts. ${wires.join("; ")}.`;
+  return "One control cycle: the work between two ticks, in order.";
 }

@@ -104,6 +104,10 @@ export async function getJson(address) {
   return (await get(address)).json();
 }
 
+export async function getText(address) {
+  return (await get(address)).text();
+}
+
 // Fetches a picture, and returns a local address of it for <img> and links: these cannot send the secret.
 export async function getPicture(address) {
   const answer = await get(address);

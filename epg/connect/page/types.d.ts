@@ -19,9 +19,15 @@ interface State extends StartState {
   hardware: HardwareRow[];
   /** For each unit: its dimension, and its factor to the dimension's own unit. */
   units: Record<string, [string, number]>;
-  /** The pictures of the target: false for a picture that errors prevent. A board without a layout has no "wiring". */
+  /** The pictures of the target: false for a picture that errors prevent. A target without pins has no "wiring". */
   pictures: Record<string, boolean>;
   forms: Forms;
+  pins: {
+    /** The signals of components that need a pin. */
+    signals: PinSignal[];
+    /** The reason why pins cannot be changed; empty if they can. */
+    why_not: string;
+  };
   /** The parts of the robot that no port uses. */
   unused: string[];
   draft: Draft;
@@ -250,6 +256,13 @@ interface Origin {
   how: "own" | "file" | "epg" | "call";
   file: string;
   line: number;
+}
+
+/** A signal of a component, and its pin; empty if the board does not have it. */
+interface PinSignal {
+  component: string;
+  signal: string;
+  pin: string;
 }
 
 interface HardwareRow {

@@ -43,6 +43,7 @@ def take_pictures(folder: Path = PICTURES) -> None:
         page.goto(epg.address)
         _start(page, folder)
         _wires(page, epg, folder)
+        _pins(page, folder)
         _build(page, epg, folder)
         _simulate(page, folder)
         browser.close()
@@ -79,6 +80,16 @@ def _wires(page: Any, epg: Served, folder: Path) -> None:
     _take(page, folder, "dark")
     page.emulate_media(color_scheme="light")
     epg.post("reload")
+
+
+def _pins(page: Any, folder: Path) -> None:
+    page.get_by_role("tab", name="Pinout").click()
+    page.get_by_role("button", name="Larger").click()
+    page.get_by_label("Signal").select_option("pwm_pan.value")
+    page.locator(".pins button").first.wait_for()
+    _take(page, folder, "pins")
+    page.get_by_role("button", name="Smaller").click()
+    page.get_by_role("tab", name="Problems").click()
 
 
 def _build(page: Any, epg: Served, folder: Path) -> None:

@@ -69,6 +69,14 @@ def test_the_reasons(tmp_path: Path) -> None:
     assert dict(found["4"].changes) == {("slow", "value"): "GP4"}
 
 
+def test_a_pin_of_the_console_is_told(tmp_path: Path) -> None:
+    lamp = "lamp: {kind: digital_output}"
+    assert options(robot(tmp_path, "rpi_pico_zephyr", lamp), ("lamp", "value"))["0"].reason == (
+        "the console of Zephyr uses it now, and would be off"
+    )
+    assert options(robot(tmp_path, "rpi_pico_bare_metal", lamp), ("lamp", "value"))["0"].reason == ""
+
+
 def test_the_other_signals_of_an_encoder_follow(tmp_path: Path) -> None:
     encoder = "encoder: {kind: quadrature_encoder, counts_per_revolution: 100, pins: {a: 6, b: 7}}"
     found = options(robot(tmp_path, "rpi_pico_bare_metal", encoder), ("encoder", "a"))
