@@ -16,6 +16,7 @@ let chosen = ""; // the chosen signal, as "component.signal"
 /** @type {Refusal | null} */
 let refused = null; // the reason why the last pin was refused
 let warning = "unseen"; // "unseen", "shown", "seen": the user must disconnect the motors before wires are changed
+/** @type {{wanted: string, of: string, svg: string, options: PinOption[]}} */
 let entry = { wanted: "", of: "", svg: "", options: [] }; // the drawing and the pins of the signal `of`
 
 /** @param {State} state */
@@ -167,7 +168,12 @@ function setPin(pin) {
   return changePins("choose_pin", { ...partsOf(chosen), pin });
 }
 
-// Sends a change of pins. The first one that is done warns of the motors.
+/**
+ * Sends a change of pins. The first one that is done warns of the motors.
+ * @template {keyof Actions} Name
+ * @param {Name} action
+ * @param {Actions[Name]} body
+ */
 async function changePins(action, body) {
   const before = JSON.stringify(current()?.pins);
   refused = await act(action, body);

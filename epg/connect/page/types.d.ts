@@ -265,6 +265,19 @@ interface PinSignal {
   pin: string;
 }
 
+/** A pin of the board for a signal. */
+interface PinOption {
+  pin: string;
+  /** The names that are printed on the board, if they differ. */
+  printed: string;
+  /** Its number on the board; empty if it is not known. */
+  contact: string;
+  state: "current" | "fits" | "used" | "reserved" | "unfit";
+  reason: string;
+  /** The pins that this choice changes. */
+  changes: PinSignal[];
+}
+
 interface HardwareRow {
   component: string;
   claim: string;
@@ -372,6 +385,9 @@ interface Actions {
   leave_out: Nothing;
   set: { changes: { path: string[]; value: unknown }[] };
   unset: { paths: string[][] };
+  choose_pin: { component: string; signal: string; pin: string };
+  /** Without signals, all signals without a pin. */
+  first_pins: { signals?: { component: string; signal: string }[] };
   undo: Nothing;
   redo: Nothing;
   save: { anyway?: boolean };
