@@ -45,10 +45,11 @@ class Activity:
     """
 
     more: ClassVar[Mapping[str, Any]] = {}
-    """The values of :attr:`Outcome.more` until the end."""
+    """The values of :attr:`Outcome.more` until the end: the initial value of ``shown``."""
 
     def __init__(self, changed: Callable[[], None]) -> None:
         self._changed = changed
+        self.shown = dict(self.more)
         self._lock = threading.Lock()
         self._lines: list[str] = []
         self._reader: Messages | None = None
@@ -96,7 +97,7 @@ class Activity:
                 "seconds": round(now - self._began, 1) if self._began else 0.0,
                 "messages": [message.data() for message in found],
                 "lines": len(self._lines),
-                **self.more,
+                **self.shown,
                 **self._outcome.more,
             }
 

@@ -1,19 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a session runs: builds and simulations, one at a time.  The last one of each is kept to show it."""
+"""What a session runs: builds, simulations and programs, one at a time.  The last one of each is kept to show it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any
 
 from epg.check.configuration import Configuration
 from epg.connect.activity import Activity
 from epg.connect.body import Refused
-from epg.connect.build.consent import Question, question_about
+from epg.connect.build.consent import Question, question_about, question_about_program
 from epg.connect.build.run import Build, configuration_of
 from epg.connect.places import Places
 from epg.connect.projects import Job
 from epg.connect.run.find_simulation import Simulation, simulations_of
+from epg.connect.run.program import ProgramRun, command_of
 from epg.connect.run.simulate import SimulationRun, commands_of
 from epg.source import Span
 
@@ -26,16 +28,21 @@ class Runs:
 
     def __init__(self, changed: Callable[[], None]) -> None:
         self._changed = changed
-        self._build, self._simulation = Build(changed), SimulationRun(changed)
+        self._build, self._simulation, self._program = Build(changed), SimulationRun(changed), ProgramRun(changed)
         self._questions: dict[str, dict[str, Any] | None] = {}
 
     @property
     def _activities(self) -> dict[str, Activity]:
-        return {"build": self._build, "simulation": self._simulation}
+        return {"build": self._build, "simulation": self._simulation, "program": self._program}
 
     @property
     def running(self) -> bool:
         return any(activity.is_running for activity in self._activities.values())
+
+    @property
+    def must_end(self) -> bool:
+        """True while something runs that ends by itself, and that the user can expect to be completed."""
+        return self.running and not self._program.is_running
 
     def check_idle(self) -> None:
         for name, activity in self._activities.items():
@@ -84,6 +91,31 @@ class Runs:
         self._simulation = SimulationRun(self._changed)
         self._simulation.start(simulation, anyway=anyway)
 
+    def run_program(self, path: str, agreed: str) -> None:
+        """Runs a product of the last build in real time, if the user has agreed.  Raises Refused."""
+        self.check_idle()
+        product = self._product(path)
+        if not product["runs"]:
+            raise Refused(f"{Path(path).name} does not run on this computer", status=409)
+        program = Path(path)
+        question = question_about_program(command_of(program), program.parent)
+        if self._ask("program", question, agreed, {}) is None:
+            self._program = ProgramRun(self._changed)
+            self._program.start(program)
+
+    def download(self, path: str) -> bytes:
+        """The contents of a product of the last build.  Raises Refused for other files."""
+        try:
+            return Path(self._product(path)["path"]).read_bytes()
+        except OSError as error:
+            raise Refused(f"cannot read {path}: {error.strerror}", "generate again", 404) from None
+
+    def _product(self, path: str) -> dict[str, Any]:
+        found = [each for each in self._build.state()["products"] if each["path"] == path]
+        if not found:
+            raise Refused(f"the last build has not made '{path}'", "generate again", 404)
+        return dict(found[0])
+
     def cancel(self) -> None:
         for activity in self._activities.values():
             if activity.is_running:
@@ -97,6 +129,7 @@ class Runs:
 
     def forget(self) -> None:
         self._build, self._simulation = Build(self._changed), SimulationRun(self._changed)
+        self._program = ProgramRun(self._changed)
         self._questions = {}
 
     def state(self, places: Places | None) -> dict[str, Any]:

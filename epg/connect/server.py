@@ -144,7 +144,7 @@ class Server:
 
     def _is_abandoned(self) -> bool:
         with self._lock:
-            if self._waiting or self.session.runs.running:
+            if self._waiting or self.session.runs.must_end:
                 return False
             if self._last_seen is None:
                 return time.monotonic() - self._started > self._until_opened
@@ -239,6 +239,8 @@ class _Handler(BaseHTTPRequestHandler):
         elif path == "api/log":
             lines = owner.session.runs.lines(query.get("of", "build"), _integer(query, "from", 0))
             self._json({"lines": lines})
+        elif path == "api/product":
+            self._send(200, "application/octet-stream", owner.session.runs.download(query.get("path", "")))
         elif path == "api/source":
             self._json(owner.session.source(query.get("file", ""), _integer(query, "line", 1)))
         elif path == "api/pins":

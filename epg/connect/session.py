@@ -97,6 +97,7 @@ class Session:
             "overview": self._show_overview,
             "generate": self._generate,
             "simulate": self._simulate,
+            "run": lambda body: self.runs.run_program(text(body, "path"), text(body, "run", "")),
             "done": lambda body: self.ended.set(),
         }
         self._unlocked: dict[str, Callable[[Body], None]] = {

@@ -82,13 +82,27 @@ def question_about(
         plan.steps[0].folder,
         tuple(_shown(command) for command in (*(step.command for step in plan.steps), *after)),
         tuple(sorted(programs)),
-        hashlib.sha256(key.encode("utf-8", "surrogatepass")).hexdigest(),
+        _hash(key),
     )
+    return _unless_agreed(question)
+
+
+def question_about_program(command: tuple[str, ...], folder: Path) -> Question | None:
+    """The question to ask before a program of a build runs in ``folder``; None if the user has agreed before."""
+    key = json.dumps([os.path.realpath(command[0]), *command[1:], _number(folder)])
+    return _unless_agreed(Question(folder, (_shown(command),), (command[0],), _hash(key)))
+
+
+_agreed: set[str] = set()
+
+
+def _unless_agreed(question: Question) -> Question | None:
     known = question.key in _agreed or question.key in _lines(cache_folder() / FILE)
     return None if known else question
 
 
-_agreed: set[str] = set()
+def _hash(text: str) -> str:
+    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def _number(folder: Path) -> int:

@@ -28,6 +28,7 @@ PATIENCE = 10.0
 class Build(Activity):
     """One build.  ``products`` in its state are the files for the user, the most useful ones first.
 
+    A product ``runs`` if it is a program for this computer.
     ``can_try`` is True if CMake was not started because tools are missing that the project may still find.
     """
 
@@ -39,7 +40,8 @@ class Build(Activity):
 
     def _build(self, job: Job, anyway: bool) -> Outcome:
         outcome, made = build(self, job, anyway=anyway)
-        listed = [{"path": str(each.path), "what": each.what} for each in made]
+        runs = _runs_here(job)
+        listed = [{"path": str(each.path), "what": each.what, "runs": runs} for each in made]
         return Outcome(outcome.state, outcome.messages, {"products": listed, **outcome.more})
 
 
@@ -92,6 +94,12 @@ def _missing_too(job: Job, configuration: Configuration, plan: Plan, found: list
     needed = find_tools(names, job.request.roots, plan.cache)
     lacking = missing_tools(needed, job.request.roots, plan.cache)
     return [message for title, message in lacking.items() if title not in said]
+
+
+def _runs_here(job: Job) -> bool:
+    """True if the products of ``job`` are programs for this computer."""
+    configuration = configuration_of(job.request)
+    return configuration is not None and configuration.target.platform.simulates_plant
 
 
 def configuration_of(request: Request) -> Configuration | None:

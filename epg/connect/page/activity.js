@@ -10,12 +10,15 @@ import { current, getJson } from "./server.js";
 import { attempt, draw, openTab, say, ui } from "./ui.js";
 
 /**
- * @typedef {"build" | "simulation"} Name
+ * @typedef {"build" | "simulation" | "program"} Name
  * @typedef {{lines: string[], fetching: boolean, open: boolean}} Log
  */
 
 /** @type {Name[]} */
-const NAMES = ["build", "simulation"]; // each is a key of the state, and the name of its tab
+const NAMES = ["build", "simulation", "program"]; // keys of the state
+
+/** @type {Record<Name, string>} */
+const TABS = { build: "build", simulation: "simulation", program: "build" };
 
 /** @type {Record<string, Log>} */
 const logs = Object.fromEntries(NAMES.map((name) => [name, { lines: [], fetching: false, open: false }]));
@@ -31,11 +34,11 @@ export const running = (state) => NAMES.find((name) => state[name].state === "ru
 /**
  * Starts `action`. Before the first time, the user sees the commands, and may agree to them.
  * @param {Name} name
- * @param {"generate" | "simulate"} action
+ * @param {"generate" | "simulate" | "run"} action
  * @param {object} body
  */
 export async function begin(name, action, body) {
-  openTab(name);
+  openTab(TABS[name]);
   if (!(await attempt(action, body))) return;
   const ask = current()[name].ask;
   if (!ask) return;
@@ -75,13 +78,13 @@ function question(name, action, body) {
 /** @param {Ask} ask */
 function commands(ask) {
   return [
-    h("p", { key: "folder" }, "These commands build the project in ", h("code", ask.folder), ":"),
+    h("p", { key: "folder" }, "These commands run in ", h("code", ask.folder), ":"),
     h("pre", { key: "commands", tabindex: "0", "aria-label": "Commands" }, ask.commands.join("\n")),
     h(
       "p",
       { key: "programs" },
-      `They start ${ask.programs.join(", ")}, and all programs that the project's CMake files start. `,
-      "They have your rights: run them only for a project that you trust. EPG asks once per folder.",
+      `They start ${ask.programs.join(", ")}, and all programs that these start for the project. `,
+      "They have your rights: run them only for a project that you trust. EPG asks once for each folder and program.",
     ),
   ];
 }
@@ -98,7 +101,7 @@ export function followActivities(state, outcomes) {
     if (activity.state !== last[name]) {
       if (activity.state === "running") {
         logs[name].lines = [];
-        ui.tab = name;
+        ui.tab = TABS[name];
       }
       if (last[name] === "running") say(outcomes[name](state));
       last[name] = activity.state;
@@ -226,7 +229,7 @@ export const pathPart = (path) => h("p.product-path", h("code", path), copyButto
  * @param {Name} name
  * @param {Activity} activity
  */
-export function logPart(name, activity) {
+export function logPart(name, activity, title = "Log") {
   return h(
     "details",
     {
@@ -237,8 +240,8 @@ export function logPart(name, activity) {
         fetchLog(name);
       },
     },
-    h("summary", `Log, ${plural(activity.lines, "line")}`),
-    h("pre", { tabindex: "0", "aria-label": "Log", keep: true, shown: (place) => showLog(place, logs[name].lines) }),
+    h("summary", `${title}, ${plural(activity.lines, "line")}`),
+    h("pre", { tabindex: "0", "aria-label": title, keep: true, shown: (place) => showLog(place, logs[name].lines) }),
   );
 }
 

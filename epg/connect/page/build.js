@@ -9,12 +9,13 @@ import {
   messagesPart,
   outcomePart,
   pathPart,
+  running,
   stepText,
 } from "./activity.js";
 import { h } from "./dom.js";
 import { isError } from "./problems.js";
-import { current } from "./server.js";
-import { attempt, openTab } from "./ui.js";
+import { current, getPicture } from "./server.js";
+import { attempt, change, openTab } from "./ui.js";
 
 export function generate() {
   return start(false);
@@ -49,13 +50,77 @@ export function buildPanel(state) {
   }
   return [
     outcomePart(build, buildOutcome(state)),
-    build.products.length && h("ul.products", { key: "products" }, build.products.map(product)),
+    build.products.length &&
+      h(
+        "ul.products",
+        { key: "products" },
+        build.products.map((made) => product(state, made)),
+      ),
     messagesPart(build, "Messages of the build", () => start(true)),
+    programPart(state),
     logPart("build", build),
   ];
 }
 
-/** @param {Build["products"][number]} made */
-function product({ path, what }) {
-  return h("li", h("p", what), pathPart(path));
+/**
+ * A product, with the ways to use it.
+ * @param {State} state
+ * @param {Product} made
+ */
+function product(state, { path, what, runs }) {
+  const name = path.split(/[\\/]/).pop();
+  return h(
+    "li",
+    h("p", what),
+    pathPart(path),
+    h(
+      "p.uses",
+      runs &&
+        h(
+          "button",
+          { disabled: Boolean(running(state)), onclick: () => begin("program", "run", { path }) },
+          `Run ${name} in real time`,
+        ),
+      h("button", { onclick: () => download(path, name) }, `Download ${name}`),
+    ),
+  );
+}
+
+// Saves a product on the computer of the browser, which can be another one. A link cannot send the page's secret.
+async function download(path, name) {
+  try {
+    const address = await getPicture(`api/product?path=${encodeURIComponent(path)}`);
+    const link = document.createElement("a");
+    link.href = address;
+    link.download = name;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(address), 60_000);
+  } catch {
+    change({ refused: { message: `${name} cannot be read.`, hint: "Generate again.", port: null } });
+  }
+}
+
+/** @param {State} state */
+export function programOutcome({ program }) {
+  const name = program.program.split(/[\\/]/).pop();
+  return {
+    idle: "Nothing has run yet.",
+    running: `${name} runs in real time. It is not enabled from here.`,
+    done: `${name} has ended.`,
+    failed: failureText(program),
+    cancelled: `${name} was stopped.`,
+  }[program.state];
+}
+
+/** @param {State} state */
+function programPart(state) {
+  const { program } = state;
+  if (program.state === "idle") return null;
+  return h(
+    "section",
+    { key: "program", "aria-label": "Program" },
+    outcomePart(program, programOutcome(state)),
+    messagesPart(program, "Messages of the program", () => {}),
+    logPart("program", program, "Output"),
+  );
 }

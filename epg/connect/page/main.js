@@ -7,7 +7,7 @@
 
 import { bars } from "./bars.js";
 import { followActivities } from "./activity.js";
-import { buildOutcome } from "./build.js";
+import { buildOutcome, programOutcome } from "./build.js";
 import { componentColumn } from "./components.js";
 import { drawDialog } from "./dialog.js";
 import { dock } from "./dock.js";
@@ -109,7 +109,8 @@ window.addEventListener("beforeunload", (event) => {
 
 listenForDrags(part("main"));
 listenForPresses(part("main"));
+const OUTCOMES = { build: buildOutcome, simulation: simulationOutcome, program: programOutcome };
 follow(() => {
-  if (current() && !hasEnded()) followActivities(current(), { build: buildOutcome, simulation: simulationOutcome });
+  if (current() && !hasEnded()) followActivities(current(), OUTCOMES);
   draw();
 });

@@ -90,6 +90,7 @@ interface StartState {
   configurations: Configuration[];
   build: Build;
   simulation: SimulationRun;
+  program: ProgramRun;
   /** Null while EPG looks for them. */
   simulations: Simulations | null;
 }
@@ -334,7 +335,19 @@ interface Ask {
 }
 
 interface Build extends Activity {
-  products: { path: string; what: string }[];
+  products: Product[];
+}
+
+interface Product {
+  path: string;
+  what: string;
+  /** True for a program for this computer. */
+  runs: boolean;
+}
+
+interface ProgramRun extends Activity {
+  /** The path of the program; empty before the first run. */
+  program: string;
 }
 
 interface SimulationRun extends Activity {
@@ -400,6 +413,8 @@ interface Actions {
   generate: { run?: string; anyway?: boolean };
   /** "accept" agrees to the proposed wires of the question. */
   simulate: { run?: string; anyway?: boolean; accept?: boolean; simulation?: string };
+  /** Runs a product of the last build in real time. */
+  run: { path: string; run?: string };
   cancel: Nothing;
   done: Nothing;
 }

@@ -76,6 +76,20 @@ def test_generates_shows_errors_and_cancels(jiwy: Project, open_page: Open) -> N
     panel.get_by_text("Log,").click()
     until(page, f"document.querySelector('.log pre').textContent.split('\\n').length >= {build['lines']}")
 
+    # The program runs in real time until it is stopped, and is downloaded.
+    panel.get_by_role("button", name="Run jiwy_host in real time").click()
+    page.get_by_role("dialog").get_by_role("button", name="Run", exact=True).click()
+    panel.get_by_text("jiwy_host runs in real time.").wait_for()
+    assert panel.get_by_role("button", name="Run jiwy_host in real time").is_disabled()
+    page.get_by_role("button", name="Stop", exact=True).click()
+    panel.get_by_text("jiwy_host was stopped.").wait_for(timeout=PATIENT)
+    panel.get_by_text("Output,").click()
+    panel.get_by_label("Output").get_by_text("interrupted").wait_for()
+    with page.expect_download() as download:
+        panel.get_by_role("button", name="Download jiwy_host").click()
+    assert download.value.suggested_filename == "jiwy_host"
+    assert download.value.path().read_bytes() == (jiwy.folder / "build/jiwy_host").read_bytes()
+
     # A build of everything that is cancelled at once.
     source.write_text(original + "\n", encoding="utf-8")
     generate.click()

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Products of a build: a program for this computer runs in real time until it is stopped, and all are downloaded."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import time
+from pathlib import Path
+from urllib.parse import quote
+
+import pytest
+
+from epg.diagnostics import Diagnostics
+from epg.new_project import ProjectRequest, write_project
+from tests.connect.builds import processes
+from tests.connect.page import Denied, Page, serving, session_of
+from tests.connect.started import generate
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("programs") / "a robot"
+    write_project(ProjectRequest("robot", folder, "host_jiwy", ROOT / "examples/jiwy/model"), Diagnostics())
+    with serving(session_of(folder)) as page:
+        assert generate(page)["state"] == "done"
+    return folder
+
+
+def run(page: Page, program: str) -> None:
+    ask = page.post("run", path=program)["program"]["ask"]
+    if ask is not None:
+        page.post("run", path=program, run=ask["key"])
+
+
+@pytest.mark.skipif(not Path("/proc/self/cmdline").exists(), reason="this system does not list processes in /proc")
+def test_a_program_runs_until_it_is_stopped(built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("EPG_CACHE", str(tmp_path / "cache"))
+    with serving(session_of(built)) as page:
+        build = generate(page)
+        (product,) = build["products"]
+        assert product["runs"] and product["path"] == str(built / "build/robot_host")
+        ask = page.post("run", path=product["path"])["program"]["ask"]
+        assert [command.split()[-2:] for command in ask["commands"]] == [["--realtime", "--duration=86400"]]
+        assert page.state()["program"]["state"] == "idle" and not processes(built)
+        page.post("run", path=product["path"], run=ask["key"])
+        page.until(lambda state: state["program"]["state"] == "running")
+        for action in ("generate", "simulate", "run"):
+            with pytest.raises(Denied, match="a program is running") as refusal:
+                page.post(action, path=product["path"])
+            assert refusal.value.status == 409
+        time.sleep(1)
+        assert len(processes(built)) == 1
+        page.post("cancel")
+        state = page.until(lambda state: state["program"]["state"] != "running")
+        assert state["program"]["state"] == "cancelled" and not processes(built)
+        output = page.json("api/log?of=program&from=0")["lines"]
+        assert "in real time" in output[0] and "interrupted" in output[0], "the program has completed its output"
+
+        # The session ends: so does the program.
+        page.post("run", path=product["path"])
+        page.until(lambda state: state["program"]["state"] == "running")
+        time.sleep(0.5)
+    assert not processes(built)
+
+
+def test_a_program_that_fails_says_why(built: Path) -> None:
+    with serving(session_of(built)) as page:
+        generate(page)
+        (product,) = page.state()["build"]["products"]
+        run(page, product["path"])
+        page.until(lambda state: state["program"]["state"] == "running")
+        until = time.monotonic() + 10
+        while not (
+            found := [int(entry.name) for entry in Path("/proc").glob("[0-9]*") if runs(entry, product["path"])]
+        ):
+            assert time.monotonic() < until
+        for process in found:
+            os.kill(process, signal.SIGKILL)
+        state = page.until(lambda state: state["program"]["state"] != "running")
+        (message,) = state["program"]["messages"]
+        assert state["program"]["state"] == "failed" and "ended with status -9" in message["message"]
+
+
+def runs(entry: Path, program: str) -> bool:
+    """True if the process with the folder ``entry`` in /proc runs ``program``."""
+    try:
+        return os.readlink(entry / "exe") == program
+    except OSError:
+        return False
+
+
+def test_only_products_of_the_last_build_are_downloaded_or_run(built: Path, tmp_path: Path) -> None:
+    with serving(session_of(built)) as page:
+        path = str(built / "build/robot_host")
+        with pytest.raises(Denied, match="the last build has not made") as refusal:
+            page.get(f"api/product?path={quote(path)}")
+        assert refusal.value.status == 404, "nothing was built in this session"
+        generate(page)
+        data, headers = page.get(f"api/product?path={quote(path)}")
+        assert data == (built / "build/robot_host").read_bytes()
+        assert headers["Content-Type"] == "application/octet-stream"
+        for other in (built / "CMakeLists.txt", built / "build/../build/robot_host", Path("/etc/passwd"), Path()):
+            with pytest.raises(Denied, match="the last build has not made"):
+                page.get(f"api/product?path={quote(str(other))}")
+        with pytest.raises(Denied, match="the last build has not made"):
+            page.post("run", path=shutil.which("ls"))
