@@ -53,6 +53,7 @@ text { font-family: ui-monospace, 'DejaVu Sans Mono', Menlo, Consolas, monospace
 .chosen { fill: none; stroke: #0969da; stroke-width: 2; }
 .hit { fill: transparent; cursor: pointer; touch-action: none; }
 .over { stroke: #0969da; stroke-width: 2.4; }
+.refused { stroke: #d1242f; stroke-width: 2.4; stroke-dasharray: 5 3; }
 .line { fill: none; stroke: #1f2328; stroke-width: 1.4; }
 .earth { fill: none; stroke: #1f2328; stroke-width: 1.6; stroke-dasharray: 6 3; }
 .grid { fill: none; stroke: #d1d9e0; }

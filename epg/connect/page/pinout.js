@@ -13,7 +13,7 @@ import { draw, say } from "./ui.js";
 const FAR = 5; // pixels; a shorter movement is a click
 
 let chosen = ""; // the chosen signal, as "component.signal"
-/** @type {Refusal | null} */
+/** @type {(Refusal & {pin: string}) | null} */
 let refused = null; // the reason why the last pin was refused
 let warning = "unseen"; // "unseen", "shown", "seen": the user must disconnect the motors before wires are changed
 /** @type {{wanted: string, of: string, svg: string, options: PinOption[]}} */
@@ -24,6 +24,7 @@ export function pinout(state) {
   const { signals, why_not: whyNot } = state.pins;
   if (!signals.some((each) => nameOf(each) === chosen)) chosen = "";
   const shown = newest(state);
+  const wrong = refused ? refused.pin : "";
   return h(
     "div.pinout",
     { key: "pinout" },
@@ -38,7 +39,7 @@ export function pinout(state) {
       onpointermove: moved,
       onpointerup: released,
       onpointercancel: () => endDrag(),
-      shown: (node) => show(node, shown.svg),
+      shown: (node) => show(node, shown.svg, wrong),
     }),
   );
 }
@@ -60,6 +61,7 @@ function tools(state, signals, whyNot, shown) {
   return [
     pictureLink(state, "wiring"),
     warning === "shown" && motorWarning(),
+    pinProblems(state),
     lacking.length > 0 &&
       h(
         "button.primary",
@@ -93,6 +95,29 @@ function tools(state, signals, whyNot, shown) {
 }
 
 const optionText = (each) => `${titleOf(each)}: ${each.pin || "no pin"}`;
+
+// The messages about pins in the files. A press chooses the signal, whose list then shows the pins that fit.
+/** @param {State} state */
+function pinProblems(state) {
+  const found = state.diagnostics.filter(({ path }) => path?.[0] === "components" && path[2] === "pins" && path[3]);
+  return (
+    found.length > 0 &&
+    h(
+      "ul.pin-problems",
+      { key: "problems" },
+      found.map(({ path, severity, message }, number) => {
+        const signal = { component: path[1], signal: path[3] };
+        return h(
+          `li.${severity}`,
+          { key: String(number) },
+          icon(severity === "error" ? "error" : "warning"),
+          h("span", `${titleOf(signal)}: ${message}`),
+          h("button", { onclick: () => choose(nameOf(signal)) }, "Choose"),
+        );
+      }),
+    )
+  );
+}
 
 function motorWarning() {
   return h(
@@ -176,7 +201,8 @@ function setPin(pin) {
  */
 async function changePins(action, body) {
   const before = JSON.stringify(current()?.pins);
-  refused = await act(action, body);
+  const answer = await act(action, body);
+  refused = answer && { ...answer, pin: "pin" in body ? String(body.pin) : "" };
   if (refused) say(`Refused: ${refused.message}. ${refused.hint}`);
   else if (before !== JSON.stringify(current()?.pins)) {
     if (warning === "unseen") warning = "shown";
@@ -212,9 +238,15 @@ async function fetchNewest(query, of) {
   }
 }
 
-// Puts the drawing into the shadow tree of `node`.
-function show(node, svg) {
-  if (node.epgSvg === svg || !svg) return;
+// Puts the drawing into the shadow tree of `node`, and marks the contact that was refused.
+function show(node, svg, wrong) {
+  if (!svg) return;
+  if (node.epgSvg !== svg) place(node, svg);
+  for (const each of node.shadowRoot.querySelectorAll("[data-pin]"))
+    each.classList.toggle("refused", each.dataset.pin === wrong);
+}
+
+function place(node, svg) {
   node.epgSvg = svg;
   const root = node.shadowRoot || node.attachShadow({ mode: "open" });
   const picture = new DOMParser().parseFromString(svg, "image/svg+xml").documentElement;

@@ -76,7 +76,15 @@ def test_a_project_its_wires_and_its_pins(firefox: Firefox, model: Path) -> None
         firefox.click("#tab-hardware")
         rows = firefox.evaluate("[...document.querySelectorAll('#panel tbody tr')].map((row) => row.textContent)")
         assert len(rows) == len(epg.state()["hardware"]) and any("GP10" in row for row in rows)
-        for name in ("wiring", "application", "schedule"):
+        # A signal is dragged to another contact of the board's drawing.
+        firefox.click("#tab-wiring")
+        firefox.resize(1280, 1600)
+        firefox.drag(".board >>> [data-signal='pwm_pan.value']", ".board >>> [data-pin='GP3']")
+        firefox.until("document.getElementById('pin-signal').selectedOptions[0].text === 'pwm_pan value: GP3'")
+        firefox.click("::-p-aria(Undo)")
+        firefox.until("document.getElementById('pin-signal').selectedOptions[0].text === 'pwm_pan value: GP2'")
+        firefox.resize(1280, 800)
+        for name in ("application", "schedule"):
             firefox.click(f"#tab-{name}")
             firefox.until("document.querySelector('#panel img.picture')?.naturalWidth > 200")
         fill = "getComputedStyle(document.querySelector('svg rect.back')).fill"

@@ -89,9 +89,10 @@ def test_clicks_choose_a_signal_and_its_pin(robot: Robot, page: Any) -> None:
     alert = page.get_by_role("alert")
     alert.get_by_text("GP4 cannot be pwm_pan value: pwm_tilt value uses it").wait_for()
     assert "pins that fit: GP0, GP1, GP3" in alert.inner_text()
+    assert page.locator(".board .refused").get_attribute("data-pin") == "GP4"  # the conflict is marked at its place
     contact(page, "GP3").click()
     until(page, "document.getElementById('pin-signal').selectedOptions[0].text === 'pwm_pan value: GP3'")
-    assert alert.count() == 0
+    assert alert.count() == 0 and page.locator(".board .refused").count() == 0
     assert robot.pin("pwm_pan", "value") == "GP3"
 
 
@@ -114,6 +115,17 @@ def test_the_same_by_keyboard(robot: Robot, page: Any) -> None:
     page.set_viewport_size({"width": 400, "height": 800})
     assert page.evaluate("document.documentElement.scrollWidth") <= 400
     assert violations(page) == []
+
+
+def test_a_conflict_in_the_file_is_solved(robot: Robot, page: Any) -> None:
+    robot.tcf.write_text(robot.text.replace("{value: 28}", "{value: 22}"), encoding="utf-8")
+    page.locator(".board .wrong").first.wait_for()
+    problem = page.locator(".pin-problems li")
+    problem.get_by_text("lamp value: pin 22 is already used by 'limit_b'").wait_for()
+    problem.get_by_role("button", name="Choose").click()
+    page.get_by_role("button", name="First that fits", exact=True).click()
+    problem.wait_for(state="detached")
+    assert robot.pin("lamp", "value") == "GP3"
 
 
 def test_components_without_pins(robot: Robot, page: Any) -> None:

@@ -63,8 +63,8 @@ def test_from_model_to_project(started: Served, model: Path, open_page: Open) ->
     assert "GP10" in table.inner_text()
     page.get_by_role("tab", name="Pinout").click()
     picture = page.get_by_role("tabpanel").get_by_role("img")
-    until(page, "document.querySelector('img.picture')?.naturalWidth > 0")
-    assert "encoder_pan: a GP10, b GP11" in picture.get_attribute("alt")
+    picture.locator("desc").wait_for(state="attached")
+    assert "encoder_pan a to contact 14 (GP10); encoder_pan b to contact 15 (GP11)" in picture.text_content()
 
     # Another target for the same board and RTOS is a normal change.
     page.get_by_role("button", name="Target").click()
