@@ -17,14 +17,17 @@ const complaints = []; // errors and warnings that the page has caused
 page.on("console", (message) => {
   if (["error", "warn"].includes(message.type())) complaints.push(message.text());
 });
+page.on("dialog", (dialog) => dialog.accept()); // the question before a page with unsaved changes is left
 page.on("pageerror", (error) => complaints.push(String(error)));
 await page.setViewport({ width: 1280, height: 800 });
 
 async function middle(selector) {
   const element = await page.waitForSelector(selector, { timeout: 5000 });
-  await element.evaluate((each) => each.scrollIntoView({ block: "nearest" }));
-  const box = await element.boundingBox();
-  return [box.x + box.width / 2, box.y + box.height / 2];
+  return element.evaluate((each) => {
+    each.scrollIntoView({ block: "nearest" });
+    const box = each.getBoundingClientRect();
+    return [box.x + box.width / 2, box.y + box.height / 2];
+  });
 }
 
 const acts = {

@@ -22,7 +22,10 @@ NAMES = ("firefox-esr", "firefox")
 
 
 class Firefox:
-    """One page of Firefox.  Elements are named by selectors of CSS, or by Puppeteer's ``::-p-aria(NAME)``."""
+    """One page of Firefox.
+
+    Elements are named by selectors of CSS and of Puppeteer: ``::-p-aria(NAME)``, ``HOST >>> IN_ITS_SHADOW``.
+    """
 
     def __init__(self) -> None:
         """Raises Missing."""
