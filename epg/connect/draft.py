@@ -14,7 +14,7 @@ from pathlib import Path
 
 from epg.connect.files import Snapshot
 from epg.edit.bindings import CannotEdit, End, set_ends
-from epg.edit.tcf import Value, remove_value, set_value
+from epg.edit.tcf import Value, remove_value, rename_key, set_value
 from epg.models.model import Model
 
 
@@ -44,7 +44,15 @@ class RemoveValue:
     path: tuple[str, ...]
 
 
-Change = SetEnds | SetValue | RemoveValue
+@dataclass(frozen=True)
+class RenameKey:
+    """Gives the key at ``path`` of the ``.tcf`` another name; its value stays."""
+
+    path: tuple[str, ...]
+    name: str
+
+
+Change = SetEnds | SetValue | RemoveValue | RenameKey
 Operation = tuple[Change, ...]
 """All changes of one user action; undo and redo treat them as one."""
 
@@ -87,9 +95,13 @@ class Draft:
     def can_redo(self) -> bool:
         return self._count < len(self._operations)
 
-    def drafts(self) -> dict[Path, str]:
-        """The texts that must be read instead of the files, by path."""
-        texts = ((self.bindings.path, self.texts.bindings), (self.tcf.path, self.texts.tcf))
+    def drafts(self, operation: Operation = (), model: Model | None = None) -> dict[Path, str]:
+        """The texts that must be read instead of the files, by path; as they would be after one more ``operation``.
+
+        Raises CannotEdit if that operation is not possible.
+        """
+        after = self._applied(self.texts, operation, model)
+        texts = ((self.bindings.path, after.bindings), (self.tcf.path, after.tcf))
         return {path: text for path, text in texts if text is not None}
 
     def do(self, operation: Operation, model: Model | None) -> None:
@@ -161,6 +173,8 @@ class Draft:
                     raise CannotEdit(f"'{file}' cannot be read")
                 if isinstance(change, SetValue):
                     texts = replace(texts, tcf=set_value(before, file, change.path, change.value))
+                elif isinstance(change, RenameKey):
+                    texts = replace(texts, tcf=rename_key(before, file, change.path, change.name))
                 else:
                     texts = replace(texts, tcf=remove_value(before, file, change.path))
             elif texts.bindings is None or model is None:

@@ -10,6 +10,7 @@ from typing import Any
 
 from epg.catalog.catalog import Catalog, load_catalog
 from epg.connect.body import Refused
+from epg.connect.component_edits import Users, pins_for, users_of, users_view
 from epg.connect.configurations import Project
 from epg.connect.draft import Draft, Operation
 from epg.connect.files import Snapshot, Watch, read_snapshot, save
@@ -33,16 +34,19 @@ class Editor:
     """The files and the draft of ``job``.  Not thread-safe: the caller must hold the session's lock.
 
     ``external`` is a note for the user about an edit by another program.  ``conflict`` is set while such an edit and
-    the draft do not fit together.
+    the draft do not fit together.  ``ask`` are the errors that saving would make in other targets of the project, while
+    the user decides about them.
     """
 
     def __init__(self, job: Job) -> None:
         self.job = job
         self.external: str | None = None
         self.conflict: dict[str, str] | None = None
+        self.ask: list[dict[str, Any]] = []
         self._tcf_path = tcf_path(job.request) or Path(os.path.abspath(job.request.tcf))
         self._models = Models()
         self._catalog: Catalog | None = None
+        self._forms: dict[str, Any] | None = None
         for path in (job.request.bindings, self._tcf_path):
             remove_leftovers(Path(os.path.realpath(path)))
         self.draft = self._new_draft()
@@ -118,6 +122,24 @@ class Editor:
         return self._catalog
 
     @property
+    def forms(self) -> dict[str, Any]:
+        """The forms of the settings and components."""
+        if self._forms is None:
+            self._forms = forms_of(self.loaded, self.catalog, owns_tcf=self.owns_tcf)
+        return self._forms
+
+    @property
+    def users(self) -> dict[str, Users]:
+        """The uses of each component."""
+        return users_of(self.loaded, self._folder())
+
+    def with_pins(self, operation: Operation, name: str) -> Operation:
+        """``operation``, which adds the component ``name``, with free pins for its signals without a pin."""
+        drafts = self.draft.drafts(operation, self.loaded.parts.model)
+        request = replace(self.job.request, drafts=drafts)
+        return (*operation, *pins_for(request, self.catalog, [name], self.loaded))
+
+    @property
     def owns_tcf(self) -> bool:
         """False if the target uses a ``.tcf`` of EPG itself, which EPG does not change."""
         return not any(root / "robots" in self._tcf_path.parents for root in self.job.request.roots)
@@ -153,11 +175,13 @@ class Editor:
         return {
             "project": {"name": self.job.request.name, "folder": str(self._folder()), "files": self._files()},
             **view_of(self.loaded),
-            "forms": forms_of(self.loaded, self.catalog, owns_tcf=self.owns_tcf),
             "pins": {
                 "signals": signals_view(self.loaded),
                 "why_not": "" if self.owns_tcf else self.project().fixed,
             },
+            "forms": self.forms,
+            "users": users_view(self.users),
+            "ask": self.ask,
             "unused": [".".join(part) for part in self.unused_parts()],
             "draft": {
                 "changed": self.draft.changed,
@@ -220,6 +244,7 @@ class Editor:
     def _load(self) -> None:
         request = replace(self.job.request, drafts=self.draft.drafts())
         self.loaded = load(request, self._models)
+        self._forms = None
         self._watch = Watch(self.loaded.files(), self._seen)
 
     def _new_draft(self) -> Draft:

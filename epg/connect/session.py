@@ -12,13 +12,14 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import epg
 from epg.connect.body import Body, Refused, bodies, boolean, ends, keys, names, text, value
 from epg.connect.build.plan import make_plan
+from epg.connect.component_edits import add, copy, fill, remove, rename, take_back
 from epg.connect.configurations import Configurations
 from epg.connect.creation import create
 from epg.connect.draft import RemoveValue, SetEnds, SetValue
@@ -88,6 +89,12 @@ class Session:
             "unset": self._unset,
             "choose_pin": self._choose_pin,
             "first_pins": self._first_pins,
+            "fill": self._fill,
+            "take_back": self._take_back,
+            "add": self._add,
+            "copy": self._copy,
+            "rename": self._rename,
+            "remove": self._remove,
             "undo": lambda body: self._opened().undo(),
             "redo": lambda body: self._opened().redo(),
             "save": self._save,
@@ -277,6 +284,40 @@ class Session:
         editor = self._of_the_user()
         wanted = [(text(each, "component"), text(each, "signal")) for each in bodies(body, "signals")] if body else None
         editor.edit(first_pins(editor.loaded, wanted))
+
+    def _fill(self, body: Body) -> None:
+        """Gives values the texts of their fields, in one step.  An empty text means the default."""
+        editor = self._of_the_user()
+        changes = [(keys(each.get("path")), text(each, "text", "").strip()) for each in bodies(body, "changes")]
+        editor.edit(tuple(c for path, wanted in changes for c in fill(editor.forms, editor.loaded, path, wanted)))
+
+    def _take_back(self, body: Body) -> None:
+        """Removes a value from the project's own file: the inherited value, or the default, holds again."""
+        editor = self._of_the_user()
+        editor.edit(tuple(take_back(editor.forms, editor.loaded, keys(body.get("path")))))
+
+    def _add(self, body: Body) -> None:
+        """Adds a component.  Pins that are not given are free ones that fit."""
+        editor, name = self._of_the_user(), text(body, "name")
+        given = body.get("values")
+        if not isinstance(given, Mapping):
+            raise Refused("'values' must be an object")
+        values = {key: text(given, key, "").strip() for key in given}
+        operation = add(editor.forms, editor.loaded, text(body, "kind"), name, values)
+        editor.edit(editor.with_pins(operation, name))
+
+    def _copy(self, body: Body) -> None:
+        """Copies a component.  The copy gets free pins."""
+        editor, name = self._of_the_user(), text(body, "name")
+        editor.edit(editor.with_pins(copy(editor.loaded, text(body, "component"), name), name))
+
+    def _rename(self, body: Body) -> None:
+        editor = self._of_the_user()
+        editor.edit(rename(editor.loaded, editor.users, text(body, "component"), text(body, "name")))
+
+    def _remove(self, body: Body) -> None:
+        editor = self._of_the_user()
+        editor.edit(remove(editor.loaded, editor.users, text(body, "component")))
 
     def _of_the_user(self) -> Editor:
         """The editor.  Raises Refused if the open target uses a ``.tcf`` of EPG itself."""

@@ -74,6 +74,27 @@ def remove_value(text: str, file: str, path: Sequence[str]) -> str:
     return _changed(text, body, _remove, file, tuple(path[:last]), None, wanted)
 
 
+def rename_key(text: str, file: str, path: Sequence[str], name: str) -> str:
+    """``text`` in which the key at ``path`` is called ``name``; its value, comments and place stay.
+
+    Raises :class:`~epg.edit.yaml_edit.CannotEdit` as :func:`set_value` does, and if there is no such key.
+    """
+    body = text.removeprefix("\ufeff")
+    wanted = copy.deepcopy(parse_map(body, file).plain())
+    if yaml_edit.find(body, tuple(path)) is None:
+        raise CannotEdit(f"{file}: there is no '{'.'.join(path)}'")
+    tree = _at(wanted, path[:-1])
+    tree[name] = tree.pop(path[-1])
+    return _changed(text, body, _rename, file, tuple(path), name, wanted)
+
+
+def _rename(text: str, path: tuple[str, ...], value: Value) -> str:
+    above = yaml_edit.node_at(text, path[:-1])
+    key = next(key for key, _ in above.value if key.value == path[-1])
+    start, end = yaml_edit.start_of(key), yaml_edit.end_of(text, key)
+    return text[:start] + scalar_text(value, key.style if key.style in ("'", '"') else "") + text[end:]
+
+
 def _at(tree: dict[str, Any], path: Sequence[str]) -> dict[str, Any]:
     for key in path:
         tree = tree[key]
