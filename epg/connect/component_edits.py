@@ -117,9 +117,10 @@ def take_back(forms: Data, loaded: Loaded, path: tuple[str, ...]) -> list[Change
     """Removes the value at ``path`` from the project's own file.  Its group stays, although it can be empty then."""
     group, own = path[:-1], loaded.chain[0].node.get(*path[:-1])
     field = field_at(forms, group) if group else None
-    if field is not None and field["type"] == "group" and field["name"] != "pins" and not _inherited(loaded, group):
-        if own is not None and [key for key, _ in own.items()] == [path[-1]]:
-            return [SetValue(group, {})]
+    is_last = own is not None and [key for key, _ in own.items()] == [path[-1]]
+    is_group = field is not None and field["type"] == "group" and field["name"] != "pins"
+    if is_last and is_group and not _inherited(loaded, group):
+        return [SetValue(group, {})]
     return [RemoveValue(path)]
 
 
@@ -145,7 +146,7 @@ def add(forms: Data, loaded: Loaded, kind: str, name: str, texts: Mapping[str, s
     _check_name(name, loaded)
     values: Data = {"kind": kind}
     known = {".".join(each["path"]): each for each in _all_fields(form["fields"])}
-    for key, text in texts.items():
+    for key, text in sorted(texts.items(), key=lambda each: each[0].count(".")):  # a group before its values
         if key not in known:
             raise Refused(f"a {kind} has no parameter '{key}'", status=404)
         if text:

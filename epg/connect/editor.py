@@ -126,6 +126,7 @@ class Editor:
         """The forms of the settings and components."""
         if self._forms is None:
             self._forms = forms_of(self.loaded, self.catalog, owns_tcf=self.owns_tcf)
+            self._forms["locked"] = "" if self.owns_tcf else self.project().fixed
         return self._forms
 
     @property

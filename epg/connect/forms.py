@@ -90,8 +90,9 @@ def _kind_form(kind: Kind, target: Target | None, components: Mapping[str, Compo
     fields = [_field((key,), child, key in schema["required"]) for key, child in properties.items()]
     for field in fields:
         if field["path"] == ["pins"]:
+            field.pop("example", None)
             for pin in field["fields"]:
-                pin["type"] = "pin"
+                pin |= {"type": "pin", "example": _pin_example(target)}
         if field["path"][0] in _CONVERSION:
             field["section"] = "Conversion of the value"
     return {
@@ -101,6 +102,10 @@ def _kind_form(kind: Kind, target: Target | None, components: Mapping[str, Compo
         "one_of": [list(names) for names in (*kind.exactly_one, *kind.at_least_one)],
         "unusable": _unusable(kind, target),
     }
+
+
+def _pin_example(target: Target | None) -> str:
+    return target.board.pin_title(target.board.pins[0]) if target is not None and target.board.pins else "10"
 
 
 def _unusable(kind: Kind, target: Target | None) -> str:

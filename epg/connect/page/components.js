@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The columns of components: ports of one direction, with the component's pins, peripheral and topic.
 
+import { addComponent } from "./component_dialogs.js";
 import { h, id } from "./dom.js";
+import { openField } from "./form.js";
 import { componentLabel, handle, match } from "./handles.js";
+import { icon } from "./icons.js";
 import { inline } from "./problems.js";
 import { unitMark } from "./wiring.js";
 
@@ -22,6 +25,13 @@ export function componentColumn(state, side, diagnostics, users) {
     h("h2", { id: `title-${side}` }, side === "sources" ? "From the target" : "To the target"),
     shown.length + without.length === 0 && h("p.empty", "No components."),
     [...shown, ...without].map((component) => card(state, side, component, direction, diagnostics, users)),
+    side === "sources" &&
+      h(
+        "button.add-component",
+        { key: "add", type: "button", disabled: Boolean(state.forms.locked), onclick: addComponent },
+        icon("plus"),
+        " Add a component",
+      ),
   );
 }
 
@@ -42,7 +52,11 @@ function card(state, side, component, direction, diagnostics, users) {
     { key: name, "aria-label": `component ${name}` },
     h(
       "div.component-head",
-      h("span.component-name", name),
+      h(
+        "button.component-name",
+        { type: "button", title: "Show its parameters", onclick: () => openField(["components", name]) },
+        name,
+      ),
       h("span.kind", { title: summary || null }, kind.replace(/_/g, " ")),
     ),
     facts.length &&

@@ -3,6 +3,7 @@
 
 import { buildPanel, buildTitle } from "./build.js";
 import { changes } from "./changes.js";
+import { componentPanel } from "./component.js";
 import { h } from "./dom.js";
 import { hardware } from "./hardware.js";
 import { icon } from "./icons.js";
@@ -10,6 +11,7 @@ import { picture } from "./pictures.js";
 import { pinout } from "./pinout.js";
 import { problemList } from "./problems.js";
 import { simulationPanel, simulationTitle } from "./simulation.js";
+import { settingsPanel } from "./settings.js";
 import { connectionTable } from "./system.js";
 import { change, openTab, ui } from "./ui.js";
 
@@ -29,6 +31,8 @@ function tabs(state) {
     problems,
     { name: "build", title: buildTitle(state), content: buildPanel },
     { name: "simulation", title: simulationTitle(state), content: simulationPanel },
+    { name: "component", title: "Component", content: componentPanel },
+    { name: "settings", title: "Settings", content: settingsPanel },
     { name: "hardware", title: "Pins and peripherals", content: hardware },
     "wiring" in pictures && { name: "wiring", title: "Pinout", content: pinout },
     { name: "application", title: "Application", content: picture },

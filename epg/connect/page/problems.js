@@ -3,6 +3,7 @@
 
 import { copyButton } from "./copy.js";
 import { h, id, plural } from "./dom.js";
+import { openField } from "./form.js";
 import { icon } from "./icons.js";
 import { current } from "./server.js";
 import { showSource } from "./source.js";
@@ -85,7 +86,7 @@ export function problem(message) {
         h("span.place", { title: full }, message.port ? `port ${message.port}` : place),
       ),
     ),
-    message.port &&
+    (message.port || message.path?.length > 0) &&
       message.file &&
       h(
         "button.quiet",
@@ -102,6 +103,7 @@ export function problem(message) {
 /** @param {Message} message */
 function goTo(message) {
   if (message.port && focusPort(message.port)) return;
+  if (message.path?.length && openField(message.path)) return;
   if (message.file) showSource(message);
 }
 

@@ -28,6 +28,10 @@ interface State extends StartState {
     /** The reason why pins cannot be changed; empty if they can. */
     why_not: string;
   };
+  /** The uses of each component that has any. */
+  users: Record<string, Users>;
+  /** The errors that saving would make in other targets, while the user decides about them. */
+  ask: { target: string; errors: Message[] }[];
   /** The parts of the robot that no port uses. */
   unused: string[];
   draft: Draft;
@@ -200,6 +204,16 @@ interface Forms {
   values: Record<string, Value>;
   /** The inherited components that the project's own .tcf removes. */
   left_out: string[];
+  /** The reason why the values cannot be changed here; empty if they can. */
+  locked: string;
+}
+
+/** The uses of a component: ports, components, settings by their keys, and files that EPG does not change here. */
+interface Users {
+  ports: string[];
+  components: string[];
+  settings: string[];
+  files: string[];
 }
 
 interface KindForm {

@@ -11,6 +11,7 @@ export const ui = {
   held: /** @type {Held | null} */ (null), // the end of a wire that the user holds
   dragged: false, // true right after a drag: the click event that follows must be ignored
   filter: { text: "", robot: "", fits: false },
+  component: null, // the name of the component in the tab Component
   chosen: null, // the configuration chosen on the start page or in the dialog
 };
 

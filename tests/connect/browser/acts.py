@@ -40,6 +40,15 @@ def save(page: Any) -> None:
     page.get_by_text("Saved", exact=True).wait_for()
 
 
+def tab_to(page: Any, condition: str, key: str = "Tab") -> None:
+    """Presses Tab until ``condition`` is true of the element ``it`` that has the focus."""
+    for _ in range(160):
+        page.keyboard.press(key)
+        if page.evaluate(f"(() => {{ const it = document.activeElement; return {condition}; }})()"):
+            return
+    raise AssertionError(f"Tab does not lead to: {condition}")
+
+
 def until(page: Any, expression: str, seconds: float = 5) -> None:
     """Waits until a JavaScript expression is true.  Playwright's own function needs eval(), which the page forbids."""
     end = time.monotonic() + seconds

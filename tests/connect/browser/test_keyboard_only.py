@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from .acts import until
+from .acts import tab_to, until
 from .served import Served
 
 Open = Callable[..., Any]
@@ -17,19 +17,12 @@ def test_everything_by_keyboard(started: Served, model: Path, open_page: Open) -
     page = open_page(started.address)
     page.get_by_role("radio", name="host_jiwy").wait_for()
 
-    def tab_to(condition: str) -> None:
-        for _ in range(120):
-            page.keyboard.press("Tab")
-            if page.evaluate(f"(() => {{ const it = document.activeElement; return {condition}; }})()"):
-                return
-        raise AssertionError(f"Tab does not lead to: {condition}")
-
-    tab_to("it.type === 'search'")
+    tab_to(page, "it.type === 'search'")
     page.keyboard.type("host_jiwy")
     until(page, "document.querySelectorAll('.card').length === 1")
-    tab_to("it.type === 'radio'")
+    tab_to(page, "it.type === 'radio'")
     page.keyboard.press("Space")
-    tab_to("it.name === 'name'")
+    tab_to(page, "it.name === 'name'")
     page.keyboard.press("Control+a")
     page.keyboard.type("camera")
     page.keyboard.press("Enter")
@@ -38,12 +31,12 @@ def test_everything_by_keyboard(started: Served, model: Path, open_page: Open) -
     assert folder.parent == model.parent
 
     # A wire removed by the list, and restored by the handles.
-    tab_to("it.id === 'ends-pwm_tilt-0'")
+    tab_to(page, "it.id === 'ends-pwm_tilt-0'")
     page.keyboard.press("Home")
     until(page, "document.querySelector('.saved').textContent.includes('Unsaved')")
     assert "pwm_tilt" not in started.state()["wires"]
     page.keyboard.press("Escape")
-    tab_to("it.dataset.side === 'sinks'")
+    tab_to(page, "it.dataset.side === 'sinks'")
     while page.evaluate("document.activeElement.dataset.name") != "pwm_tilt":
         page.keyboard.press("ArrowDown")
     page.keyboard.press("Enter")
@@ -55,17 +48,17 @@ def test_everything_by_keyboard(started: Served, model: Path, open_page: Open) -
     page.keyboard.press("Control+s")
     until(page, "document.querySelector('.saved').textContent === 'Saved'")
 
-    tab_to("it.textContent === 'Generate'")
+    tab_to(page, "it.textContent === 'Generate'")
     page.keyboard.press("Enter")
     page.get_by_role("dialog", name="Run these commands?").wait_for()
-    tab_to("it.textContent === 'Run'")
+    tab_to(page, "it.textContent === 'Run'")
     page.keyboard.press("Enter")
     page.locator(".outcome:not(.running)").wait_for(timeout=60_000)
     assert started.state()["build"]["state"] == "done", started.state()["build"]
     (product, *_) = started.state()["build"]["products"]
     assert Path(product["path"]).is_file()
-    tab_to("it.textContent === 'Copy path'")
-    tab_to("it.textContent === 'Close EPG'")
+    tab_to(page, "it.textContent === 'Copy path'")
+    tab_to(page, "it.textContent === 'Close EPG'")
     page.keyboard.press("Enter")
     page.get_by_text("EPG has ended").wait_for()
     assert started.wait() == 0

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+// The fields of a form: one for each value that a .tcf can have, with its description, its place and its messages.
+
+import { h, id } from "./dom.js";
+import { inline, shortFile } from "./problems.js";
+import { current } from "./server.js";
+import { attempt, openTab, say, ui } from "./ui.js";
+
+export const words = (name) => name.replaceAll("_", " ");
+
+/**
+ * The fields of the values below `base`.
+ * @param {State} state
+ * @param {string[]} base
+ * @param {Field[]} fields
+ */
+export function formFields(state, base, fields) {
+  return fields.map((field) => (field.type === "group" ? group(state, base, field) : row(state, base, field)));
+}
+
+/**
+ * @param {State} state
+ * @param {string[]} base
+ * @param {Field} field
+ */
+function row(state, base, field) {
+  const path = [...base, ...field.path];
+  const value = state.forms.values[path.join(".")];
+  const messages = messagesAt(state, path);
+  const name = id("field", ...path);
+  return h(
+    "div.field",
+    { key: name, class: messages.length ? "field has-error" : "field" },
+    label(name, field),
+    control(field, value?.text || "", {
+      id: name,
+      disabled: Boolean(state.forms.locked) || value?.how === "call",
+      "aria-describedby": `${name}-hint`,
+      onchange: (event) => fill(path, event.target.value.trim()),
+    }),
+    hint(name, field),
+    place(state, path, field, value),
+    inline(messages),
+  );
+}
+
+/** The messages about exactly the value at `path`. */
+export const messagesAt = (state, path) => state.diagnostics.filter((each) => each.path?.join(".") === path.join("."));
+
+/**
+ * A group of values that belong together. If no value of it is required, a box switches all of them off and on.
+ * @param {State} state
+ * @param {string[]} base
+ * @param {Field} field
+ */
+function group(state, base, field) {
+  const path = [...base, ...field.path];
+  const value = state.forms.values[path.join(".")];
+  const always = field.name === "pins";
+  const isOn = always || Boolean(value && !value.removed);
+  const name = id("field", ...path);
+  return h(
+    "fieldset.field-group",
+    { key: name, disabled: Boolean(state.forms.locked) },
+    h(
+      "legend",
+      always
+        ? words(field.name)
+        : h(
+            "label.check",
+            h("input", {
+              type: "checkbox",
+              id: name,
+              checked: isOn,
+              "aria-describedby": `${name}-hint`,
+              onchange: (event) => fill(path, event.target.checked ? "{}" : ""),
+            }),
+            words(field.name),
+          ),
+    ),
+    hint(name, field),
+    inline(messagesAt(state, path)),
+    isOn && h("div.form-fields", formFields(state, base, field.fields)),
+    !isOn && place(state, path, field, value),
+  );
+}
+
+/** @param {Field} field */
+export function label(name, field) {
+  const marks = field.required ? h("span.muted", " (required)") : null;
+  return h("label", { for: name }, words(field.name), marks);
+}
+
+/** @param {Field} field */
+export function hint(name, field) {
+  const unit = field.units ? `${field.units.slice(0, -1).join(", ")} or ${field.units.at(-1)}` : "";
+  const parts = [
+    field.type !== "pin" && field.description,
+    field.limits,
+    unit && `a number with ${unit}`,
+    field.example && `for example ${field.example}`,
+  ];
+  return h("span.hint", { id: `${name}-hint` }, parts.filter(Boolean).join("; "));
+}
+
+/**
+ * The input of one value. An empty text means the default.
+ * @param {Field} field
+ */
+export function control(field, text, attributes) {
+  const choices = field.type === "boolean" ? ["true", "false"] : field.choices;
+  if (!choices) {
+    const placeholder = field.default ? `default: ${field.default}` : null;
+    return h("input", {
+      type: "text",
+      key: "control",
+      spellcheck: "false",
+      autocomplete: "off",
+      initial: text,
+      placeholder,
+      ...attributes,
+    });
+  }
+  const none = field.default ? `default: ${field.default}` : field.required ? "(choose)" : "(none)";
+  const listed = text && !choices.includes(text) ? [text, ...choices] : choices;
+  const option = (value, shown) => h("option", { key: `:${value}`, value }, shown);
+  return h("select", { key: "control", value: text, ...attributes }, [
+    option("", none),
+    listed.map((each) => option(each, each)),
+  ]);
+}
+
+/**
+ * The file of a value, and the way back to the value that holds without the project's own file.
+ * @param {State} state
+ * @param {string[]} path
+ * @param {Field} field
+ * @param {Value | undefined} value
+ */
+function place(state, path, field, value) {
+  if (!value) return null;
+  const { back } = value;
+  const text = { own: "in", file: "from", epg: "from EPG's", call: "set in" }[value.how];
+  const where = `${text} ${shortFile(value.file)}, line ${value.line}`;
+  const to = back ? `${back.text} (${shortFile(back.file)})` : field.default ? `default ${field.default}` : "no value";
+  return h(
+    "p.origin",
+    { key: "origin" },
+    h("span", { title: value.file }, value.removed ? `left out ${where}` : where),
+    value.own &&
+      (back || !field.required) &&
+      h(
+        "button.quiet",
+        {
+          key: "back",
+          type: "button",
+          disabled: Boolean(state.forms.locked),
+          "aria-label": `Take ${words(field.name)} back to ${to}`,
+          onclick: () => takeBack(path),
+        },
+        `Back to ${to}`,
+      ),
+  );
+}
+
+async function fill(path, text) {
+  if (await attempt("fill", { changes: [{ path, text }] })) report(path);
+}
+
+async function takeBack(path) {
+  if (!(await attempt("take_back", { path }))) return;
+  report(path);
+  document.getElementById(id("field", ...path))?.focus();
+}
+
+// Tells a screen reader the value in the files, and the first message about it.
+function report(path) {
+  const state = current();
+  const value = state.forms.values[path.join(".")];
+  const [message] = messagesAt(state, path);
+  const shown = value && !value.removed ? value.text : "default";
+  say(message ? `${message.severity}: ${message.message}` : `${words(path.at(-1))}: ${shown}`);
+}
+
+/**
+ * Shows the field of the value at `path`. Returns false if there is none.
+ * @param {string[]} path
+ */
+export function openField(path) {
+  const ofComponent = path[0] === "components" && path.length > 1;
+  if (ofComponent) ui.component = path[1];
+  openTab(ofComponent ? "component" : "settings");
+  for (let length = path.length; length > 0; length--) {
+    const field = document.getElementById(id("field", ...path.slice(0, length)));
+    if (!field) continue;
+    field.scrollIntoView({ block: "center" });
+    field.focus();
+    return true;
+  }
+  if (ofComponent) document.getElementById("component-choice")?.focus();
+  return ofComponent;
+}

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tab with the settings of the target: control loop, communication, node, clocks.
+
+import { h, id } from "./dom.js";
+import { formFields } from "./form.js";
+
+/** @param {State} state */
+export function settingsPanel(state) {
+  const { settings, locked } = state.forms;
+  return h("div.form", [
+    locked && h("p.form-note", { key: "locked" }, locked),
+    settings.length === 0 &&
+      h("p.empty", { key: "none" }, "The .tcf cannot be read. The tab Problems shows the reason."),
+    settings.map(({ title, fields }) =>
+      h(
+        "section",
+        { key: title, "aria-labelledby": id("settings", title) },
+        h("h3", { id: id("settings", title) }, title),
+        h("div.form-fields", formFields(state, [], fields)),
+      ),
+    ),
+  ]);
+}

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The parameters of components and the settings in the page; a robot that is built by keyboard alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from epg.cli.main import main
+from tests.connect.robots import axes_project
+from tests.emulator.toolchain import skip_if_missing
+
+from .acts import tab_to, until
+from .axe import axe_core, violations
+from .conftest import Project
+from .served import Served
+
+Open = Callable[..., Any]
+
+
+class Keyboard:
+    """A user without a pointer."""
+
+    def __init__(self, page: Any, epg: Served) -> None:
+        self.page, self.epg = page, epg
+
+    def to(self, condition: str) -> None:
+        tab_to(self.page, condition)
+
+    def press(self, key: str) -> None:
+        self.page.keyboard.press(key)
+
+    def write(self, field: str, text: str) -> None:
+        """Fills the field with this id."""
+        self.to(f"it.id === '{field}'")
+        self.press("Control+a")
+        self.page.keyboard.type(text)
+
+    def choose(self, field: str, value: str) -> None:
+        """Opens the list with this id, and chooses."""
+        self.to(f"it.id === '{field}'")
+        values = self.page.evaluate("[...document.activeElement.options].map((each) => each.value)")
+        steps = values.index(value) - self.page.evaluate("document.activeElement.selectedIndex")
+        self.press("Space")
+        for _ in range(abs(steps)):
+            self.press("ArrowDown" if steps > 0 else "ArrowUp")
+        self.press("Enter")
+        until(self.page, f"document.getElementById('{field}').value === '{value}'")
+
+    def add(self, kind: str, name: str, texts: dict[str, str] | None = None, boxes: tuple[str, ...] = ()) -> None:
+        self.to("it.className === 'add-component'")
+        self.press("Enter")
+        self.to(f"it.id === 'kind-{kind}'")
+        self.press("Enter")
+        until(self.page, "document.activeElement.id === 'add-name'")
+        self.press("Control+a")
+        self.page.keyboard.type(name)
+        for box in boxes:
+            self.to(f"it.id === 'add-{box}'")
+            self.press("Space")
+        for field, text in (texts or {}).items():
+            if self.page.evaluate(f"document.getElementById('add-{field}').localName") == "select":
+                self.choose(f"add-{field}", text)
+            else:
+                self.write(f"add-{field}", text)
+        self.to("it.textContent === 'Add'")
+        self.press("Enter")
+        until(self.page, "document.activeElement.id === 'component-choice' && !document.querySelector('dialog')")
+        assert self.page.evaluate("document.activeElement.value") == name
+
+    def wire(self, port: str, reference: str) -> None:
+        self.choose(f"ends-{port}-0", f":{reference}")
+
+
+def build_axis(user: Keyboard, axis: str) -> None:
+    """One axis with encoder, motor, limit switch and guard, in place of the topics of the new project."""
+    user.add("quadrature_encoder", f"encoder_{axis}", {"counts_per_revolution": "4096"})
+    user.add("pwm_h_bridge", f"motor_{axis}")
+    user.add("digital_input", f"limit_{axis}")
+    user.choose(f"field-components-limit_{axis}-pull", "up")
+    user.choose(f"field-components-limit_{axis}-invert", "true")
+    user.add(
+        "motion_guard",
+        f"guard_{axis}",
+        {"actuator": f"motor_{axis}", "encoder": f"encoder_{axis}"},
+        boxes=("stall",),
+    )
+    user.wire(f"position_{axis}", f"encoder_{axis}")
+    user.wire(f"end_{axis}", f"limit_{axis}")
+    user.wire(f"duty_{axis}", f"motor_{axis}")
+
+
+def build_robot(served: Served, page: Any, folder: Path, axes: tuple[str, ...]) -> None:
+    user = Keyboard(page, served)
+    page.locator(".diagram").wait_for()
+    for axis in axes:
+        build_axis(user, axis)
+    user.add("digital_input", "emergency_stop")
+    user.choose("field-components-emergency_stop-pull", "up")
+    user.choose("field-components-emergency_stop-invert", "true")
+    user.to("it.id === 'tab-component'")
+    user.press("ArrowRight")
+    until(page, "document.activeElement.id === 'tab-settings'")
+    user.choose("field-control-fail_safe", "emergency_stop")
+    user.write("field-control-period", "1 ms")
+    user.press("Enter")
+    until(page, "document.getElementById('field-control-period').parentElement.querySelector('.origin')")
+    user.to("it.className === 'leave-out'")
+    user.press("Enter")
+    until(page, "!document.querySelector('.leave-out')")
+    user.press("Control+s")
+    until(page, "document.querySelector('.saved').textContent === 'Saved'")
+    state = served.state()
+    assert [each["message"] for each in state["diagnostics"] if each["severity"] != "note"] == []
+    components = {each["name"] for each in state["components"]}
+    parts = ("encoder", "motor", "limit", "guard")
+    topics = {f"setpoint_{axis}" for axis in axes}
+    assert components == {f"{part}_{axis}" for axis in axes for part in parts} | topics | {"emergency_stop"}
+    files = ["--tcf", folder / "robot.tcf", "--model", folder / "model", "--bindings", folder / "robot.bindings.yaml"]
+    assert main(["check", *map(str, files)]) == 0
+
+
+@pytest.fixture
+def one_axis(browser: Any, tmp_path: Path) -> Iterator[tuple[Served, Path]]:
+    folder = axes_project(tmp_path, ("x",))
+    with Served(folder) as served:
+        yield served, folder
+
+
+def test_a_robot_of_one_axis_by_keyboard(one_axis: tuple[Served, Path], open_page: Open) -> None:
+    served, folder = one_axis
+    build_robot(served, open_page(served.address), folder, ("x",))
+
+
+def test_a_file_of_epg_is_shown_but_not_changed(jiwy: Project, open_page: Open) -> None:
+    page = open_page(jiwy.address)
+    page.get_by_role("button", name="pwm_pan", exact=True).first.click()
+    frequency = page.get_by_label("frequency")
+    assert frequency.input_value() == "20 kHz" and frequency.is_disabled()
+    page.get_by_text("which EPG does not change").first.wait_for()
+
+
+def test_messages_lead_to_their_fields(one_axis: tuple[Served, Path], open_page: Open) -> None:
+    skip_if_missing(axe_core)
+    served, _ = one_axis
+    page = open_page(served.address)
+    served.post("add", kind="pwm_h_bridge", name="motor", values={})
+    page.get_by_role("button", name="motor", exact=True).click()
+    assert page.locator("#component-choice").input_value() == "motor"
+
+    frequency = page.get_by_label("frequency")
+    assert (frequency.input_value(), frequency.get_attribute("placeholder")) == ("", "default: 20 kHz")
+    frequency.fill("20 Kilo")
+    frequency.press("Enter")
+    field = page.locator(".field", has=frequency)
+    field.get_by_text("unknown unit 'Kilo'").wait_for()
+    assert page.get_by_role("button", name="motor", exact=True).is_visible()  # the drawing stays
+    assert violations(page) == []
+    page.get_by_role("tab", name="Problems").click()
+    page.locator(".problem", has_text="Kilo").click()
+    until(page, "document.activeElement.id === 'field-components-motor-frequency'")
+    page.get_by_role("button", name="Take frequency back to default 20 kHz").click()
+    until(page, "!document.querySelector('.field.has-error')")
+    until(page, "document.activeElement.id === 'field-components-motor-frequency'")
+    assert "components.motor.frequency" not in served.state()["forms"]["values"]
+
+    page.set_viewport_size({"width": 400, "height": 800})
+    assert page.evaluate("document.documentElement.scrollWidth") <= 400
+    page.get_by_role("button", name="Remove", exact=True).click()
+    assert violations(page) == []
+    page.keyboard.press("Escape")
+    page.get_by_role("button", name="Add a component").first.click()
+    assert violations(page) == []
+    page.get_by_role("button", name="quadrature encoder").click()
+    page.get_by_role("button", name="Add", exact=True).click()
+    page.get_by_text("one of these must be set").wait_for()
+    assert violations(page) == []
+    page.emulate_media(color_scheme="dark")
+    assert violations(page) == []
+    assert page.evaluate("document.documentElement.scrollWidth") <= 400
