@@ -60,7 +60,7 @@ export function componentPanel(state) {
 }
 
 /** @param {State} state */
-export const componentNames = (state) =>
+const componentNames = (state) =>
   Object.keys(state.forms.values)
     .filter((path) => path.startsWith("components.") && path.split(".").length === 2)
     .map((path) => path.split(".")[1]);

@@ -45,7 +45,7 @@ function row(state, base, field) {
 }
 
 /** The messages about exactly the value at `path`. */
-export const messagesAt = (state, path) => state.diagnostics.filter((each) => each.path?.join(".") === path.join("."));
+const messagesAt = (state, path) => state.diagnostics.filter((each) => each.path?.join(".") === path.join("."));
 
 /**
  * A group of values that belong together. If no value of it is required, a box switches all of them off and on.

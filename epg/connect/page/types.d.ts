@@ -415,6 +415,14 @@ interface Actions {
   choose_pin: { component: string; signal: string; pin: string };
   /** Without signals, all signals without a pin. */
   first_pins: { signals?: { component: string; signal: string }[] };
+  /** An empty text means that no file sets the value. */
+  fill: { changes: { path: string[]; text: string }[] };
+  take_back: { path: string[] };
+  /** `values` are the texts of fields, by their keys joined by dots. */
+  add: { kind: string; name: string; values: Record<string, string> };
+  copy: { component: string; name: string };
+  rename: { component: string; name: string };
+  remove: { component: string };
   undo: Nothing;
   redo: Nothing;
   save: { anyway?: boolean };
