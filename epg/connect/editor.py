@@ -78,6 +78,7 @@ class Editor:
             save(before, after, project=self.job.source_dir, anyway=anyway)
             self.draft.saved(after)
         self.conflict = self.external = None
+        self.ask = []
         self._seen = self.draft.bindings, self.draft.tcf
         self._load()
 
@@ -85,6 +86,7 @@ class Editor:
         """Discards the draft and reads the files again."""
         self.draft = self._new_draft()
         self.conflict = self.external = None
+        self.ask = []
         self._load()
 
     def look(self) -> bool:
@@ -224,6 +226,7 @@ class Editor:
 
     def _after_edit(self) -> None:
         self.external = None
+        self.ask = []
         if self.conflict is not None and not self.draft.changed:
             self.draft = self._new_draft()  # the last change was undone, so nothing can be lost
             self.conflict = None

@@ -26,6 +26,7 @@ from epg.connect.draft import RemoveValue, SetEnds, SetValue
 from epg.connect.editor import Editor
 from epg.connect.excerpt import excerpt
 from epg.connect.files import Unsavable
+from epg.connect.other_targets import new_errors, readers
 from epg.connect.overview import Overview
 from epg.connect.pictures import draw
 from epg.connect.pinout import chosen_pin, draw_pinout, first_pins, options_view
@@ -34,6 +35,7 @@ from epg.connect.run.find_simulation import simulations_of
 from epg.connect.runs import Runs, find_simulation
 from epg.connect.start import Start
 from epg.connect.targets import Targets
+from epg.connect.view import diagnostic_view
 from epg.diagnostics import Diagnostics
 from epg.edit.bindings import CannotEdit, End
 
@@ -112,6 +114,7 @@ class Session:
             "cancel": lambda body: self.runs.cancel(),
         }
         self._shown: State = {}
+        self._readers: tuple[Editor, list[str]] | None = None
         self._publish()
         threading.Thread(target=self._list_configurations, daemon=True).start()
 
@@ -327,8 +330,33 @@ class Session:
         return editor
 
     def _save(self, body: Body) -> None:
-        self._opened().save(anyway=boolean(body, "anyway"))
+        editor = self._opened()
+        if not boolean(body, "agreed"):
+            self._check_others(editor)
+        editor.save(anyway=boolean(body, "anyway"))
         self._open_anew()
+
+    def _others(self, editor: Editor) -> list[Job]:
+        return [job for job in self._targets.jobs if job.request.name != editor.job.request.name]
+
+    def _shared(self, editor: Editor) -> list[str]:
+        """The other targets that read the project's own ``.tcf``, as they were when the target was opened."""
+        if self._readers is None or self._readers[0] is not editor:
+            found = readers(editor.draft.tcf.path, self._others(editor)) if editor.owns_tcf else []
+            self._readers = editor, [job.request.name for job in found]
+        return self._readers[1]
+
+    def _check_others(self, editor: Editor) -> None:
+        """Raises Refused if saving makes errors in other targets of the project, which the state then lists."""
+        texts = {after.path: after.text or "" for _, after in editor.draft.unsaved()}
+        errors = new_errors(texts, self._others(editor))
+        editor.ask = [
+            {"target": name, "errors": [diagnostic_view(each) for each in found]} for name, found in errors.items()
+        ]
+        if errors:
+            self._publish()
+            hint = "correct them, or save although these targets then have errors"
+            raise Refused(f"saving makes errors in other targets: {', '.join(errors)}", hint, 409)
 
     def _reload(self, body: Body) -> None:
         self._opened().reload()
@@ -489,6 +517,7 @@ class Session:
             if self._editor is not None:
                 shown = {"phase": "connect", "create": None, **self._editor.show()}
                 shown["project"]["targets"] = self._targets.names
+                shown["forms"] = {**shown["forms"], "shared": self._shared(self._editor)}
                 shown["project"]["system"] = self._overview.name if self._overview is not None else None
                 model, project = self._editor.loaded.parts.model, self._editor.project()
             elif self._overview is not None:

@@ -34,3 +34,14 @@ def axes_project(folder: Path, axes: Sequence[str], target: str = "rpi_pico2_bar
     )
     write_project(ProjectRequest("robot", folder / "robot", target, model), Diagnostics())
     return folder / "robot"
+
+
+def with_second_target(folder: Path) -> Path:
+    """The project ``folder`` with a target ``second``, whose ``.tcf`` extends the first one's."""
+    (folder / "second.tcf").write_text("version: 1\nextends: robot.tcf\nnode: second_node\n")
+    (folder / "second.bindings.yaml").write_text((folder / "robot.bindings.yaml").read_text())
+    cmake = folder / "CMakeLists.txt"
+    text = cmake.read_text()
+    call = "epg_add_target(second TCF second.tcf MODEL model BINDINGS second.bindings.yaml)"
+    cmake.write_text(f"{text}\n{call}\n")
+    return folder

@@ -12,7 +12,7 @@ import pytest
 from epg.connect.body import Refused
 from epg.connect.session import Session
 from tests.connect.page import session_of
-from tests.connect.robots import axes_project
+from tests.connect.robots import axes_project, with_second_target
 
 ENCODER = {"kind": "quadrature_encoder", "name": "encoder", "values": {"counts_per_revolution": "4096"}}
 
@@ -181,3 +181,43 @@ def test_a_value_without_a_field_is_refused(axis: Session) -> None:
         fill(axis, "target", "host")
     with pytest.raises(Refused, match=r"there is no value 'components\.position_x\.kind'"):
         fill(axis, "components.position_x.kind", "pwm")
+
+
+@pytest.fixture
+def shared(tmp_path: Path) -> Iterator[tuple[Session, Path]]:
+    """A project with a second target, whose .tcf extends the first one's."""
+    folder = with_second_target(axes_project(tmp_path, ("x",)))
+    session = session_of(folder)
+    yield session, folder
+    session.ended.set()
+
+
+def test_errors_in_other_targets_are_shown_before_saving(shared: tuple[Session, Path]) -> None:
+    session, folder = shared
+    before = (folder / "robot.tcf").read_text()
+    assert session.state()["forms"]["shared"] == ["second"]
+    fill(session, "control.overrun_limit", "3")
+    session.act("save", {})  # is no error anywhere
+    session.act("connect", {"port": "setpoint_x", "ends": [{"reference": "end_x"}]})
+    session.act("remove", {"component": "position_x"})
+    with pytest.raises(Refused, match="saving makes errors in other targets: second") as refused:
+        session.act("save", {})
+    assert refused.value.status == 409
+    state = session.state()
+    assert state["draft"]["changed"] and "position_x" in (folder / "robot.tcf").read_text()
+    (asked,) = state["ask"]
+    assert asked["target"] == "second" and "there is no component 'position_x'" in asked["errors"][0]["message"]
+    assert session.act("undo", {})["ask"] == []
+    session.act("redo", {})
+    state = session.act("save", {"agreed": True})
+    assert state["ask"] == [] and not state["draft"]["changed"]
+    assert (folder / "robot.tcf").read_text() != before
+    fill(session, "control.overrun_limit", "4")
+    assert not session.act("save", {})["draft"]["changed"]  # the second target had this error before
+
+
+def test_the_other_target_can_be_opened(shared: tuple[Session, Path]) -> None:
+    session, _ = shared
+    state = session.act("open", {"target": "second"})
+    assert state["forms"]["shared"] == []
+    assert state["forms"]["values"]["components.position_x.topic"]["how"] == "file"

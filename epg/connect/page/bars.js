@@ -54,7 +54,21 @@ export function bars(state) {
       list.push(bar("readonly", "warning", [h("b", "Connections cannot be changed here. "), state.why_not]));
     }
   }
-  if (ui.refused) {
+  const asked = state?.phase === "connect" ? state.ask : [];
+  if (asked.length) {
+    list.push(
+      bar(
+        "others",
+        "error",
+        [
+          h("b", `Saving makes errors in other targets: ${asked.map(({ target }) => target).join(", ")}.`),
+          asked.map(({ target, errors }) => errors.map(({ message }) => h("span.hint", `${target}: ${message}`))),
+        ],
+        h("button", { onclick: () => attempt("save", { agreed: true }) }, "Save with these errors"),
+      ),
+    );
+  }
+  if (ui.refused && !asked.length) {
     const dismiss = h("button.quiet", { onclick: () => change({ refused: null }) }, "Dismiss");
     list.push(bar("refused", "error", explained(ui.refused), dismiss));
   }

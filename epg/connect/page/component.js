@@ -3,7 +3,7 @@
 
 import { addComponent, copyComponent, removeComponent, renameComponent } from "./component_dialogs.js";
 import { h, id } from "./dom.js";
-import { formFields } from "./form.js";
+import { formFields, formNotes } from "./form.js";
 import { inline, shortFile } from "./problems.js";
 import { attempt, change, say, ui } from "./ui.js";
 
@@ -39,7 +39,7 @@ export function componentPanel(state) {
       h("span.space", { key: "space" }),
       button("Add a component", addComponent),
     ),
-    locked && h("p.form-note", { key: "locked" }, forms.locked),
+    formNotes(state),
     names.length === 0 && h("p.empty", { key: "none" }, "This target has no components yet."),
     names.length > 0 && parameters(state, name, kind),
     forms.left_out.length > 0 &&

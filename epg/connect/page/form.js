@@ -48,6 +48,25 @@ function row(state, base, field) {
 const messagesAt = (state, path) => state.diagnostics.filter((each) => each.path?.join(".") === path.join("."));
 
 /**
+ * Notes above a form: the reason why it cannot be changed, and the other targets that a change touches.
+ * @param {State} state
+ */
+export function formNotes(state) {
+  const { locked, shared } = state.forms;
+  const file = shortFile(state.project.files.tcf);
+  return [
+    locked && h("p.form-note", { key: "locked" }, locked),
+    shared.length > 0 &&
+      h(
+        "p.form-note",
+        { key: "shared" },
+        `A change of ${file} touches these targets, too: ${shared.join(", ")}. `,
+        "Saving checks them first.",
+      ),
+  ];
+}
+
+/**
  * A group of values that belong together. If no value of it is required, a box switches all of them off and on.
  * @param {State} state
  * @param {string[]} base

@@ -2,13 +2,13 @@
 // The tab with the settings of the target: control loop, communication, node, clocks.
 
 import { h, id } from "./dom.js";
-import { formFields } from "./form.js";
+import { formFields, formNotes } from "./form.js";
 
 /** @param {State} state */
 export function settingsPanel(state) {
-  const { settings, locked } = state.forms;
+  const { settings } = state.forms;
   return h("div.form", [
-    locked && h("p.form-note", { key: "locked" }, locked),
+    formNotes(state),
     settings.length === 0 &&
       h("p.empty", { key: "none" }, "The .tcf cannot be read. The tab Problems shows the reason."),
     settings.map(({ title, fields }) =>

@@ -206,6 +206,8 @@ interface Forms {
   left_out: string[];
   /** The reason why the values cannot be changed here; empty if they can. */
   locked: string;
+  /** The other targets that read the project's own .tcf. */
+  shared: string[];
 }
 
 /** The uses of a component: ports, components, settings by their keys, and files that EPG does not change here. */
@@ -425,7 +427,8 @@ interface Actions {
   remove: { component: string };
   undo: Nothing;
   redo: Nothing;
-  save: { anyway?: boolean };
+  /** `agreed`: although other targets of the project then have errors. */
+  save: { anyway?: boolean; agreed?: boolean };
   reload: Nothing;
   choose: { configuration: string };
   open: { target: string };

@@ -140,10 +140,22 @@ class _Dialog:
             say_refused(problem, self._console)
             return 1
 
+    def _save_with_errors(self) -> bool:
+        """Saves although other targets then have errors, if the user agrees.  They are listed first."""
+        asked = self._talk.session.state()["ask"]
+        for each in asked:
+            for error in each["errors"]:
+                self._console.say(f"{each['target']}: error: {error['message']}")
+        return (
+            bool(asked)
+            and self._console.agree("save with these errors?", "n")
+            and self._talk.act("save", {"agreed": True})
+        )
+
     def _save(self) -> bool:
         conflict = self._talk.state["draft"]["conflict"]
         if conflict is None:
-            return self._talk.act("save", {})
+            return self._talk.act("save", {}) or self._save_with_errors()
         self._console.say(f"error: {conflict['message']}")
         if self._console.agree("save anyway, and overwrite the other program's changes?", "n"):
             return self._talk.act("save", {"anyway": True})

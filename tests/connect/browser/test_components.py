@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from epg.cli.main import main
-from tests.connect.robots import axes_project
+from tests.connect.robots import axes_project, with_second_target
 from tests.emulator.toolchain import skip_if_missing
 
 from .acts import tab_to, until
@@ -181,3 +181,20 @@ def test_messages_lead_to_their_fields(one_axis: tuple[Served, Path], open_page:
     page.emulate_media(color_scheme="dark")
     assert violations(page) == []
     assert page.evaluate("document.documentElement.scrollWidth") <= 400
+
+
+def test_errors_in_another_target_need_an_agreement(browser: Any, tmp_path: Path, open_page: Open) -> None:
+    folder = with_second_target(axes_project(tmp_path, ("x",)))
+    with Served(folder) as served:
+        page = open_page(served.address)
+        page.get_by_role("button", name="position_x", exact=True).click()
+        page.get_by_text("touches these targets, too: second").wait_for()
+        page.get_by_role("button", name="Remove", exact=True).click()
+        page.get_by_text("Wires of these ports: position_x").wait_for()
+        page.get_by_role("dialog").get_by_role("button", name="Remove", exact=True).click()
+        page.get_by_role("button", name="Save", exact=True).click()
+        page.get_by_text("second: there is no component 'position_x'").wait_for()
+        assert "position_x:" in (folder / "robot.tcf").read_text()
+        page.get_by_role("button", name="Save with these errors").click()
+        page.get_by_text("Saved", exact=True).wait_for()
+        assert "  position_x:" not in (folder / "robot.tcf").read_text()
