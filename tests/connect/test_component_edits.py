@@ -17,19 +17,32 @@ from tests.connect.robots import axes_project, with_second_target
 ENCODER = {"kind": "quadrature_encoder", "name": "encoder", "values": {"counts_per_revolution": "4096"}}
 
 
-@pytest.fixture
-def axis(tmp_path: Path) -> Iterator[Session]:
-    session = session_of(axes_project(tmp_path, ("x",)))
+@pytest.fixture(scope="module")
+def axis_session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Session]:
+    session = session_of(axes_project(tmp_path_factory.mktemp("axis"), ("x",)))
     yield session
     session.ended.set()
 
 
 @pytest.fixture
-def jiwy(project: Path) -> Iterator[Session]:
-    """A project whose .tcf extends one of EPG's."""
-    session = session_of(project)
+def axis(axis_session: Session) -> Iterator[Session]:
+    """A project whose .tcf has all of its components itself.  Tests do not save it."""
+    yield axis_session
+    axis_session.act("reload", {})
+
+
+@pytest.fixture(scope="module")
+def jiwy_session(new_project: Path) -> Iterator[Session]:
+    session = session_of(new_project)
     yield session
     session.ended.set()
+
+
+@pytest.fixture
+def jiwy(jiwy_session: Session) -> Iterator[Session]:
+    """A project whose .tcf extends one of EPG's.  Tests do not save it."""
+    yield jiwy_session
+    jiwy_session.act("reload", {})
 
 
 def diff(state: dict[str, Any]) -> list[str]:
@@ -73,7 +86,8 @@ def test_a_wrong_component_is_refused(axis: Session, body: dict[str, Any], messa
     assert not axis.state()["draft"]["changed"]
 
 
-def test_a_name_follows_everywhere(axis: Session) -> None:
+def test_a_name_follows_everywhere(tmp_path: Path) -> None:
+    axis = session_of(axes_project(tmp_path, ("x",)))
     axis.act("add", ENCODER)
     axis.act("add", {"kind": "pwm_h_bridge", "name": "motor", "values": {}})
     guard = {"actuator": "motor", "encoder": "encoder", "stall": "{}", "runaway.duty": "0.2"}
@@ -141,13 +155,13 @@ def test_a_group_of_values_is_switched_on_and_off(axis: Session) -> None:
     assert "span" not in diff(state)[0]
 
 
-def test_an_inherited_value_is_overridden_and_comes_back(jiwy: Session, project: Path) -> None:
+def test_an_inherited_value_is_overridden_and_comes_back(jiwy: Session, new_project: Path) -> None:
     before = jiwy.state()["forms"]["values"]["components.pwm_pan.frequency"]
     assert before["how"] == "epg" and "own" not in before
     state = fill(jiwy, "components.pwm_pan.frequency", "10 kHz")
     assert diff(state) == ["+components:", "+  pwm_pan: {frequency: 10 kHz}"]
     value = state["forms"]["values"]["components.pwm_pan.frequency"]
-    assert value["own"] and value["how"] == "own" and value["file"] == str(project / "robot.tcf")
+    assert value["own"] and value["how"] == "own" and value["file"] == str(new_project / "robot.tcf")
     assert value["back"]["text"] == before["text"] and value["back"]["file"] == before["file"]
     state = fill(jiwy, "components.pwm_pan.frequency", "")  # the default of the kind, without EPG's value
     assert diff(state) == ["+components:", "+  pwm_pan: {frequency: null}"]
@@ -169,9 +183,11 @@ def test_an_inherited_component_is_left_out_and_brought_back(jiwy: Session) -> N
     assert state["forms"]["values"]["components.guard_tilt.actuator"]["text"] == "motor_tilt"
 
 
-def test_files_that_name_a_component_are_listed(jiwy: Session, project: Path) -> None:
-    (project / "moves.yaml").write_text("version: 1\nevents: [{at: 1 s, set: {encoder_pan: 1}}]\n")
+def test_files_that_name_a_component_are_listed(jiwy: Session, new_project: Path) -> None:
+    file = new_project / "moves.yaml"
+    file.write_text("version: 1\nevents: [{at: 1 s, set: {encoder_pan: 1}}]\n")
     state = fill(jiwy, "control.overrun_limit", "3")
+    file.unlink()
     assert state["users"]["encoder_pan"]["files"] == ["moves.yaml"]
     assert state["users"]["encoder_tilt"]["files"] == []
 

@@ -23,6 +23,7 @@ from epg.connect.terminal.console import Console
 from epg.connect.terminal.dialog import run
 from tests.connect.builds import processes
 from tests.connect.page import session_of
+from tests.connect.robots import axes_project, with_second_target
 
 ROOT = Path(__file__).resolve().parents[2]
 MODEL = ROOT / "examples/jiwy/model"
@@ -375,3 +376,17 @@ def test_a_terminal_obeys_no_text_of_a_file() -> None:
     console.table(("", ""), [("1", "c\x07")])
     assert console.ask("d\x1b[0m", "") == "\x1b[2J"
     assert output.getvalue() == "a?[31m?b\n1  c?\nd?[0m: ?[2J\n"
+
+
+def test_errors_in_other_targets_are_listed_before_saving(tmp_path: Path) -> None:
+    folder = with_second_target(axes_project(tmp_path, ("x",)))
+    session = session_of(folder)
+    session.act("connect", {"port": "setpoint_x", "ends": [{"reference": "end_x"}]})
+    session.act("connect", {"port": "position_x", "ends": [{"reference": "end_x"}]})
+    session.act("remove", {"component": "position_x"})
+    before = (folder / "robot.tcf").read_text()
+    status, output = talk(session, "", "", "y", "n")
+    assert status != 0 and "second: error: there is no component 'position_x'" in output
+    assert (folder / "robot.tcf").read_text() == before
+    talk(session, "", "", "y", "y", "n")
+    assert "  position_x:" not in (folder / "robot.tcf").read_text()

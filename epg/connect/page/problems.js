@@ -65,7 +65,11 @@ export function shortFile(file) {
   return parts.length > 3 ? `…/${parts.slice(-2).join("/")}` : file;
 }
 
-// One message as a button. A click leads to its port, or else shows its line.
+// A message about a value that the page can change.
+/** @param {Message} message */
+const leadsToField = (message) => message.path?.length > 0 && !current().forms?.locked;
+
+// One message as a button. A click leads to its port or field, or else shows its line.
 /** @param {Message} message */
 export function problem(message) {
   const full = placeText(message.file, message.line, message.column);
@@ -86,7 +90,7 @@ export function problem(message) {
         h("span.place", { title: full }, message.port ? `port ${message.port}` : place),
       ),
     ),
-    (message.port || message.path?.length > 0) &&
+    (message.port || leadsToField(message)) &&
       message.file &&
       h(
         "button.quiet",
@@ -103,7 +107,7 @@ export function problem(message) {
 /** @param {Message} message */
 function goTo(message) {
   if (message.port && focusPort(message.port)) return;
-  if (message.path?.length && openField(message.path)) return;
+  if (leadsToField(message) && openField(message.path)) return;
   if (message.file) showSource(message);
 }
 
