@@ -16,7 +16,7 @@ from epg.connect.draft import Draft, Operation
 from epg.connect.files import Snapshot, Watch, read_snapshot, save
 from epg.connect.forms import forms_of
 from epg.connect.loaded import Models, load, tcf_path
-from epg.connect.pinout import signals_view
+from epg.connect.pinout import problems_view, signals_view
 from epg.connect.projects import Job
 from epg.connect.unused import unused_parts
 from epg.connect.view import view_of
@@ -180,6 +180,7 @@ class Editor:
             **view_of(self.loaded),
             "pins": {
                 "signals": signals_view(self.loaded),
+                "problems": problems_view(self.loaded),
                 "why_not": "" if self.owns_tcf else self.project().fixed,
             },
             "forms": self.forms,

@@ -28,10 +28,11 @@ from epg.models.folders import searched_folders
 from epg.models.neighbours import Neighbours
 from epg.project import Parts, Request, hardware_of, load_configuration, load_parts
 from epg.resolve.allocation import Hardware
-from epg.resolve.first_fit import Signal
+from epg.resolve.claims import component_claims, tick_claims
+from epg.resolve.first_fit import Signal, complete_claims, signals_of
 from epg.resolve.matching import Match, match_ports
 from epg.resolve.pin_options import PinOption, pin_options
-from epg.resolve.resolve import allocate_hardware
+from epg.resolve.resolve import allocate_claims, allocate_hardware
 from epg.source import Span, YamlNode
 
 _MOST_WATCHED = 2000
@@ -125,6 +126,25 @@ class Loaded:
         if signal not in self._pin_options:
             self._pin_options[signal] = pin_options(self.wired, self.period, signal)
         return self._pin_options[signal]
+
+    @cached_property
+    def pin_problems(self) -> tuple[tuple[Signal, str], ...]:
+        """The errors of pins and peripherals: the signal that each is about, and the message."""
+        configuration = self.wired
+        if configuration is None or not configuration.target.has_pins:
+            return ()
+        diagnostics = Diagnostics()
+        ticks = tick_claims(configuration.target, self.period, configuration.control.period_span)
+        claims = complete_claims(component_claims(configuration), configuration.target)
+        allocate_claims([*claims, *ticks], configuration, self.period, diagnostics)
+        result = []
+        for problem in diagnostics:
+            _, component, *keys = [*self.places.path(problem), "", ""][:5]
+            signals = [signal for signal in signals_of(configuration) if signal[0] == component]
+            told = [signal for signal in signals if keys[:2] == ["pins", signal[1]]] or signals[:1]
+            if problem.severity == "error" and told:
+                result.append((told[0], problem.message))
+        return tuple(result)
 
     @cached_property
     def _pin_options(self) -> dict[Signal, tuple[PinOption, ...]]:

@@ -39,6 +39,14 @@ def signals_view(loaded: Loaded) -> list[Data]:
     ]
 
 
+def problems_view(loaded: Loaded) -> list[Data]:
+    """The errors of pins and peripherals, each with a signal whose pin can be changed."""
+    return [
+        {"component": component, "signal": signal, "message": message}
+        for (component, signal), message in loaded.pin_problems
+    ]
+
+
 def options_view(loaded: Loaded, signal: Signal) -> list[Data]:
     """The pins of the board for ``signal``.  Raises Refused if there is no such signal."""
     configuration, options = _asked(loaded, signal)
@@ -68,8 +76,11 @@ def draw_pinout(loaded: Loaded, title: str, signal: Signal | None = None, *, for
     if configuration is None or configuration.target.board.layout is None:
         return None
     hardware = loaded.hardware or as_written(component_claims(configuration), configuration.target)
+    wrong = [signal for signal, _ in loaded.pin_problems]
     choice = Choice(signal, _asked(loaded, signal)[1]) if signal is not None else None
-    return draw_wiring(configuration.target, configuration.components, hardware, title, choice, for_page=for_page)
+    return draw_wiring(
+        configuration.target, configuration.components, hardware, title, choice, wrong, for_page=for_page
+    )
 
 
 def chosen_pin(loaded: Loaded, signal: Signal, pin: str) -> tuple[SetValue, ...]:

@@ -183,12 +183,14 @@ def draw_wiring(
     assignments: Mapping[ClaimKey, Assignment],
     title: str,
     choice: Choice | None = None,
+    wrong: Collection[Signal] = (),
     *,
     for_page: bool = False,
 ) -> str:
     """The picture as the text of an SVG file.  The board of ``target`` must have a layout.
 
-    With ``choice``, the contacts show if they can have the chosen signal.  ``for_page`` adds the rectangles that react
+    With ``choice``, the contacts show if they can have the chosen signal.  ``wrong`` are signals whose pin is an error.
+    ``for_page`` adds the rectangles that react
     to a pointer: ``data-pin`` and ``data-signal`` name the contact or the terminal.
     """
     board = target.board
@@ -212,7 +214,7 @@ def draw_wiring(
     states = {option.pin: option for option in choice.options} if choice is not None else {}
     seen: set[str] = set()
     for side, found in sides.items():
-        seen |= _contacts(picture, target, frame, side, found, states, for_page)
+        seen |= _contacts(picture, target, frame, side, found, states, wrong, for_page)
         other = {each.component for name in sides if name != side for each in sides[name] if not each.on_board}
         soldered = [terminal for terminal in found if not terminal.on_board]
         _side(picture, layout, frame, side, _parts(components, soldered, other), for_page)
@@ -235,6 +237,7 @@ def _contacts(
     side: str,
     found: Sequence[Terminal],
     options: Mapping[str, PinOption],
+    wrong: Collection[Signal],
     for_page: bool,
 ) -> set[str]:
     """Draws the contacts of a side, and returns their states."""
@@ -249,6 +252,8 @@ def _contacts(
     for place, contact in _places(layout, side).items():
         x, y = sign * frame.inside, place * frame.pitch
         state = _state(target, layout, contact, users.get(place, []), options)
+        if any((terminal.component, terminal.signal) in wrong for terminal in users.get(place, [])):
+            state = "wrong"
         seen.add(state)
         name = _contact_name(target, contact)
         note = _note(target, layout, contact, users.get(place, []), options)
@@ -513,7 +518,11 @@ _FREE = "free pin"
 
 def _legend(choice: Choice | None) -> list[tuple[str, str]]:
     """The states of contacts with a pin, and their meanings."""
-    result = [("used", "used: the colour is that of the wire"), ("wrong", "used twice"), ("contact", _FREE)]
+    result = [
+        ("used", "used: the colour is that of the wire"),
+        ("wrong", "an error: see the messages"),
+        ("contact", _FREE),
+    ]
     if choice is not None:
         result += [("fits", f"can be {choice.title}"), ("unfit", f"cannot be {choice.title}")]
     return [*result, ("reserved", "reserved: used by the board itself, or by other code")]

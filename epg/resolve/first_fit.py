@@ -28,7 +28,7 @@ from epg.resolve.pins import Pins, all_places
 from epg.resolve.resolve import allocate_claims
 from epg.resolve.search import Demand, Place, find_places
 
-__all__ = ["Signal", "first_fit", "signals_of", "usable_pin", "with_pins"]
+__all__ = ["Signal", "complete_claims", "first_fit", "is_complete", "signals_of", "usable_pin", "with_pins"]
 
 Signal = tuple[str, str]
 """The name of a component, and that of a pin of its kind: ``("pwm_pan", "direction_a")``."""
@@ -71,6 +71,17 @@ def with_pins(configuration: Configuration, pins: Mapping[Signal, str]) -> list[
                 signals.pop(signal, None)
         result.append(replace(claim, signals=MappingProxyType(signals)))
     return result
+
+
+def complete_claims(claims: Sequence[Claim], target: Target) -> list[Claim]:
+    """The claims whose signals all have pins: the others cannot be allocated yet."""
+    return [claim for claim in claims if is_complete(claim, target)]
+
+
+def is_complete(claim: Claim, target: Target) -> bool:
+    """True if all signals of a claim have pins, or if it cannot have pins on this target."""
+    found = target.resource_class(claim.resource_class)
+    return bool(claim.node) or found is None or all(signal in claim.signals for signal in found.signals)
 
 
 def first_fit(
@@ -124,7 +135,7 @@ class _Search:
         self.pins = Pins(self.target, claims, Diagnostics(), configuration.others)
         self.dividers = Dividers(self.target, Diagnostics())
         self.order = {pin: number for number, pin in enumerate(_preferred(self.target))}
-        self.known = [claim for claim in claims if self._is_complete(claim)]
+        self.known = complete_claims(claims, self.target)
         self.taken = {self.target.board.pin_name(str(s.value)) for c in claims for s in c.signals.values()}
         self.others = self._demands([*self.known, *self.ticks])
         self.open = [found for claim in claims if self._missing(claim) and (found := self._opened(claim)) is not None]
@@ -194,7 +205,7 @@ class _Search:
         shown = {signal: self.target.board.pin_title(pin) for signal, pin in pins.items()}
         before = self._errors(self.known)
         claims = with_pins(self.configuration, {**self.fixed, **shown})
-        if self._errors([claim for claim in claims if self._is_complete(claim)]) > before:
+        if self._errors(complete_claims(claims, self.target)) > before:
             return None
         return {signal: shown[signal] for signal in signals_of(self.configuration) if signal in shown}
 
@@ -212,11 +223,6 @@ class _Search:
             for signal, name in own.signals.items()
             if (claim.component, name) in self.wanted and signal not in claim.signals
         }
-
-    def _is_complete(self, claim: Claim) -> bool:
-        """True if all signals of a claim have pins, as far as its class is known."""
-        found = self.target.resource_class(claim.resource_class)
-        return bool(claim.node) or (found is not None and all(signal in claim.signals for signal in found.signals))
 
     def _opened(self, claim: Claim) -> _Open | None:
         """A claim with missing pins; None if no pin of the board, or no peripheral, can be used for it."""

@@ -17,7 +17,7 @@ from epg.catalog.hardware import ResourceClass
 from epg.check.configuration import Configuration
 from epg.diagnostics import Diagnostics
 from epg.resolve.claims import Claim, tick_claims
-from epg.resolve.first_fit import Signal, first_fit, signals_of, with_pins
+from epg.resolve.first_fit import Signal, complete_claims, first_fit, is_complete, signals_of, with_pins
 from epg.resolve.pins import Pins
 from epg.resolve.resolve import allocate_claims
 
@@ -118,7 +118,7 @@ class _Options:
         own = next(each for each in claims if each.key == self.key)
         errors = self._errors(claims)
         new = [message for message in errors if message not in self.before]
-        if self._is_complete(own, resource_class) and not new:
+        if is_complete(own, self.target) and not new:
             return alone, ""
         peripheral = self.target.soc.peripherals.get(resource_class.peripheral or "")
         reaches = peripheral is None or self.pins.reachable(resource_class, peripheral, {self.class_signal: pin})
@@ -133,15 +133,6 @@ class _Options:
         """The messages of the allocation of all claims that have their pins."""
         diagnostics = Diagnostics()
         ticks = tick_claims(self.target, self.period, self.configuration.control.period_span)
-        complete = [
-            claim
-            for claim in claims
-            if claim.node
-            or (found := self.target.resource_class(claim.resource_class)) is None
-            or self._is_complete(claim, found)
-        ]
+        complete = complete_claims(claims, self.target)
         allocate_claims([*complete, *ticks], self.configuration, self.period, diagnostics)
         return [problem.message for problem in diagnostics if problem.severity == "error"]
-
-    def _is_complete(self, claim: Claim, resource_class: ResourceClass) -> bool:
-        return all(signal in claim.signals for signal in resource_class.signals)

@@ -92,11 +92,31 @@ def test_a_conflict_is_drawn(tmp_path: Path) -> None:
     assert [each["id"] for each in state["diagnostics"] if each["severity"] == "error"] == ["pin-used-twice"]
     assert state["pictures"]["wiring"]
     svg = epg.pinout("", "")
-    assert 'class="wrong"' in svg and "used twice" in svg
+    assert 'class="wrong"' in svg and "an error: see the messages" in svg
+    (problem,) = state["pins"]["problems"]
+    assert problem == {"component": "pwm_tilt", "signal": "value", "message": "pin 4 is already used by 'pwm_pan'"}
     assert "contact 6: GP4: pwm_pan value and pwm_tilt value" in svg
     state = epg.act("first_pins", {"signals": [{"component": "pwm_pan", "signal": "value"}]})
     assert not [each for each in state["diagnostics"] if each["severity"] == "error"]
     assert pins(state)["pwm_pan value"] == "GP2"
+
+
+def test_an_error_of_a_peripheral_is_drawn_at_a_pin(tmp_path: Path) -> None:
+    epg = session(tmp_path, more="components:\n  slow: {kind: pwm, frequency: 50 Hz, pins: {value: 3}}\n")
+    (problem,) = epg.state()["pins"]["problems"]
+    assert (problem["component"], problem["signal"]) == ("slow", "value")
+    assert "which has only one frequency" in problem["message"]
+    assert epg.pinout("", "").count('class="wrong"') == 2  # GP3 and the legend
+    assert epg.act("first_pins", {"signals": [problem]})["pins"]["problems"] == []
+
+
+def test_a_reserved_pin_is_an_error(tmp_path: Path) -> None:
+    robot = "nucleo_h743zi_bare_metal_jiwy"
+    epg = session(tmp_path, robot, "components:\n  lamp: {kind: digital_output, pins: {value: PA13}}\n")
+    assert [each["message"] for each in epg.state()["pins"]["problems"]] == [
+        "pin PA13 of nucleo_h743zi is reserved: the debugger uses it"
+    ]
+    assert 'class="wrong"' in epg.pinout("", "")
 
 
 def test_components_without_pins_get_the_first_that_fit(tmp_path: Path) -> None:

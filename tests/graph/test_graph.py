@@ -10,7 +10,10 @@ from pathlib import Path
 
 import pytest
 
+from epg.catalog.catalog import load_catalog
 from epg.cli.main import main
+from epg.data import targets_roots
+from epg.diagnostics import Diagnostics
 from epg.graph.svg import Picture
 from tests.graph.pictures import Line, Svg
 
@@ -138,6 +141,14 @@ def test_both_sides_few_grounds_and_what_is_on_the_board(big: Path, capsys: pyte
     assert svg.words.count("pwm_h_bridge (part)") == 4
     assert "led value: GP25, the LED on the board" in svg.words
     assert svg.words.count("10 kΩ to ground") == 7
+
+
+@pytest.mark.parametrize("name", ["rpi_pico", "rpi_pico2_w", "nucleo_f767zi", "nucleo_h743zi", "nucleo_h743zi2"])
+def test_each_pin_of_a_board_has_one_contact(name: str) -> None:
+    target = load_catalog(targets_roots([]), Diagnostics()).find_target(f"{name}_zephyr")
+    assert target is not None and target.board.layout is not None
+    shown = [contact.pin for row in target.board.layout.rows for contact in row.contacts]
+    assert sorted(pin for pin in shown if pin in target.board.pins) == sorted(target.board.pins)
 
 
 @pytest.mark.parametrize("board", ["nucleo_f767zi", "nucleo_h743zi", "nucleo_h743zi2"])

@@ -96,25 +96,24 @@ function tools(state, signals, whyNot, shown) {
 
 const optionText = (each) => `${titleOf(each)}: ${each.pin || "no pin"}`;
 
-// The messages about pins in the files. A press chooses the signal, whose list then shows the pins that fit.
+// The errors of pins in the files. A press chooses the signal, whose list then shows the pins that fit.
 /** @param {State} state */
 function pinProblems(state) {
-  const found = state.diagnostics.filter(({ path }) => path?.[0] === "components" && path[2] === "pins" && path[3]);
+  const { problems } = state.pins;
   return (
-    found.length > 0 &&
+    problems.length > 0 &&
     h(
       "ul.pin-problems",
       { key: "problems" },
-      found.map(({ path, severity, message }, number) => {
-        const signal = { component: path[1], signal: path[3] };
-        return h(
-          `li.${severity}`,
+      problems.map((each, number) =>
+        h(
+          "li.error",
           { key: String(number) },
-          icon(severity === "error" ? "error" : "warning"),
-          h("span", `${titleOf(signal)}: ${message}`),
-          h("button", { onclick: () => choose(nameOf(signal)) }, "Choose"),
-        );
-      }),
+          icon("error"),
+          h("span", `${titleOf(each)}: ${each.message}`),
+          h("button", { "aria-label": `Choose ${titleOf(each)}`, onclick: () => choose(nameOf(each)) }, "Choose"),
+        ),
+      ),
     )
   );
 }

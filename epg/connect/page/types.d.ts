@@ -25,6 +25,8 @@ interface State extends StartState {
   pins: {
     /** The signals of components that need a pin. */
     signals: PinSignal[];
+    /** The errors of pins and peripherals, each with a signal whose pin can be changed. */
+    problems: { component: string; signal: string; message: string }[];
     /** The reason why pins cannot be changed; empty if they can. */
     why_not: string;
   };
