@@ -21,13 +21,18 @@ page.on("dialog", (dialog) => dialog.accept()); // the question before a page wi
 page.on("pageerror", (error) => complaints.push(String(error)));
 await page.setViewport({ width: 1280, height: 800 });
 
+// The middle of an element in the window, as soon as it no longer moves. Another element may take its place meanwhile.
 async function middle(selector) {
-  const element = await page.waitForSelector(selector, { timeout: 5000 });
-  return element.evaluate((each) => {
-    each.scrollIntoView({ block: "nearest" });
-    const box = each.getBoundingClientRect();
-    return [box.x + box.width / 2, box.y + box.height / 2];
-  });
+  for (let before = ""; ; ) {
+    const element = await page.waitForSelector(selector, { timeout: 5000 });
+    const place = await element.evaluate((each) => {
+      each.scrollIntoView({ block: "nearest" });
+      const { x, y, width, height } = each.getBoundingClientRect();
+      return each.isConnected ? [x + width / 2, y + height / 2] : null;
+    });
+    if (place && place.join() === before) return place;
+    before = place?.join() ?? "";
+  }
 }
 
 const acts = {
