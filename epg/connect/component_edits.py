@@ -16,12 +16,13 @@ from pathlib import Path
 from epg.catalog.catalog import Catalog
 from epg.check.names import identifier_problem
 from epg.connect.body import Refused
-from epg.connect.draft import Change, Operation, RemoveValue, RenameKey, SetEnds, SetValue
-from epg.connect.forms import Data, field_at, value_of
+from epg.connect.draft import Change, Operation, RemoveValue, RenameKey, SetEnds, SetParameter, SetValue
+from epg.connect.forms import PARAMETERS, Data, field_at, parameter_path, value_of
 from epg.connect.loaded import Loaded
 from epg.diagnostics import Diagnostics
 from epg.edit.bindings import End, ends_of
 from epg.project import Request, load_configuration
+from epg.quantity import number_hint
 from epg.resolve.first_fit import first_fit, signals_of
 
 COMPONENTS = "components"
@@ -106,6 +107,11 @@ def fill(forms: Data, loaded: Loaded, path: tuple[str, ...], text: str) -> list[
     found = field_at(forms, path)
     if found is None:
         raise Refused(f"there is no value '{'.'.join(path)}'", "reload the page", 409)
+    if path[0] == PARAMETERS:
+        value = value_of(found, text, Refused) if text else None
+        if not (value is None or isinstance(value, (int, float))):
+            raise Refused(f"'{text}' is not a number", number_hint(text))
+        return [SetParameter(parameter_path(loaded, path[1]), value)]
     if text:
         return [SetValue(path, value_of(found, text, Refused))]
     if forms["values"].get(".".join(path), {}).get("removed"):
@@ -115,6 +121,8 @@ def fill(forms: Data, loaded: Loaded, path: tuple[str, ...], text: str) -> list[
 
 def take_back(forms: Data, loaded: Loaded, path: tuple[str, ...]) -> list[Change]:
     """Removes the value at ``path`` from the project's own file.  Its group stays, although it can be empty then."""
+    if path[0] == PARAMETERS:
+        return fill(forms, loaded, path, "")
     group, own = path[:-1], loaded.chain[0].node.get(*path[:-1])
     field = field_at(forms, group) if group else None
     is_last = own is not None and [key for key, _ in own.items()] == [path[-1]]

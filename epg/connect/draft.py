@@ -52,7 +52,15 @@ class RenameKey:
     name: str
 
 
-Change = SetEnds | SetValue | RemoveValue | RenameKey
+@dataclass(frozen=True)
+class SetParameter:
+    """Gives the key at ``path`` of the bindings a value: below ``parameters``.  None removes it."""
+
+    path: tuple[str, ...]
+    value: float | None
+
+
+Change = SetEnds | SetValue | RemoveValue | RenameKey | SetParameter
 Operation = tuple[Change, ...]
 """All changes of one user action; undo and redo treat them as one."""
 
@@ -167,7 +175,9 @@ class Draft:
 
     def _applied(self, texts: Texts, operation: Iterable[Change], model: Model | None) -> Texts:
         for change in operation:
-            if not isinstance(change, SetEnds):
+            if isinstance(change, SetParameter):
+                texts = replace(texts, bindings=self._with_parameter(texts.bindings, change))
+            elif not isinstance(change, SetEnds):
                 file, before = self.tcf.path.name, texts.tcf
                 if before is None:
                     raise CannotEdit(f"'{file}' cannot be read")
@@ -184,6 +194,14 @@ class Draft:
                 text = set_ends(texts.bindings, self.bindings.path.name, model, change.port, change.ends)
                 texts = replace(texts, bindings=text)
         return texts
+
+    def _with_parameter(self, text: str | None, change: SetParameter) -> str:
+        file = self.bindings.path.name
+        if text is None:
+            raise CannotEdit(f"'{file}' cannot be read")
+        if change.value is None:
+            return remove_value(text, file, change.path)
+        return set_value(text, file, change.path, change.value)
 
 
 def _lines(text: str) -> list[str]:

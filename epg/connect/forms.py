@@ -37,6 +37,9 @@ Data = dict[str, Any]
 Path_ = tuple[str, ...]
 
 CONSOLE = "console"
+PARAMETERS = "parameters"
+_MOST_PARAMETERS = 300
+"""The largest number of parameters of a model that get fields: each new state of the session has all fields."""
 _CONVERSION = ("scale", "offset", "unit", "limits")
 _SCALARS = {"number": "number", "integer": "integer", "boolean": "boolean", "string": "text"}
 
@@ -52,11 +55,12 @@ def forms_of(loaded: Loaded, catalog: Catalog, *, owns_tcf: bool) -> Data:
         return {"kinds": {}, "settings": [], "values": {}, "left_out": []}
     kinds = {name: kind for name in catalog.kind_names() if (kind := catalog.find_kind(name)) is not None}
     kind_forms = {name: _kind_form(kind, target, components) for name, kind in kinds.items()}
-    settings = _settings(root, target, components, catalog)
+    settings = [*_settings(root, target, components, catalog), *_parameters(loaded)]
     places = _Places(loaded, owns_tcf)
     values = places.values(("components", name) for name in _component_names(root))
     for section in settings:
         values |= places.values(tuple(field["path"]) for field in section["fields"])
+    values |= _parameter_values(loaded)
     own = loaded.chain[0].node.get("components") if loaded.chain else None
     left_out = [name for name, node in own.items() if node.value is None] if own is not None else []
     return {"kinds": kind_forms, "settings": settings, "values": values, "left_out": left_out}
@@ -191,6 +195,39 @@ def _settings(
         {"title": title, "fields": [_field(path, schema, path == ("node",)) for path, schema in fields.items()]}
         for title, fields in sections
     ]
+
+
+def _parameters(loaded: Loaded) -> list[Data]:
+    """The section with the parameters of the model, whose values are in the bindings; empty if there are too many."""
+    model = loaded.parts.model
+    if model is None or not 0 < len(model.parameters) <= _MOST_PARAMETERS:
+        return []
+    fields = []
+    for parameter in model.parameters:
+        field = {"path": [PARAMETERS, parameter.name], "name": parameter.name, "type": "number"}
+        unit = f"in {parameter.unit}" if parameter.unit else "without a unit"
+        field |= {"description": f"exported value {parameter.value:g}, {unit}", "default": repr(parameter.value)}
+        fields.append(field)
+    return [{"title": "Parameters of the model", "fields": fields}]
+
+
+def parameter_path(loaded: Loaded, name: str) -> Path_:
+    """The keys of the value of a parameter in the bindings, which can write ``.`` for ``\\``, and a map with limits."""
+    section = loaded.root.get(PARAMETERS) if loaded.root is not None else None
+    for key, node in section.items() if section is not None else ():
+        if key.replace(".", "\\") == name.replace(".", "\\"):
+            return (PARAMETERS, key, "value") if node.is_mapping else (PARAMETERS, key)
+    return PARAMETERS, name
+
+
+def _parameter_values(loaded: Loaded) -> Data:
+    found: Data = {}
+    for parameter in loaded.parts.model.parameters if loaded.parts.model is not None else ():
+        node = loaded.root.get(*parameter_path(loaded, parameter.name)) if loaded.root is not None else None
+        if node is not None:
+            place = {"how": "own", "file": node.span.file, "line": node.span.line, "own": True}
+            found[f"{PARAMETERS}.{parameter.name}"] = {"text": _node_text(node), **place}
+    return found
 
 
 def _below(section: str, schemas: Mapping[str, Any]) -> dict[Path_, Any]:

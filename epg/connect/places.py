@@ -28,7 +28,8 @@ class Places:
         self._bindings = bindings
         self._ports = sorted(_keys(root, _SECTIONS)) if root is not None else []
         self._components = sorted(key for file in chain for key in _keys(file.node, ("components",)))
-        self._paths = sorted((place, path) for file in chain for place, path in _paths(file.node, ()))
+        nodes = [*(file.node for file in chain), *([root] if root is not None else [])]
+        self._paths = sorted((place, path) for node in nodes for place, path in _paths(node, ()))
         ports = (*model.inputs, *model.outputs) if model is not None else ()
         spans = [port.span for port in ports]
         self._declared = {port.span: port.name for port in ports if port.span.line and spans.count(port.span) == 1}
@@ -50,11 +51,16 @@ class Places:
         return _name(self._components, diagnostic.span)
 
     def path(self, diagnostic: Diagnostic) -> list[str]:
-        """The keys of the value in a ``.tcf`` that a message is about; empty if it is about another file."""
+        """The keys of the value in a ``.tcf``, or of the parameter in the bindings, that a message is about.
+
+        Empty if it is about anything else.
+        """
         span = diagnostic.span
         before = [path for place, path in self._paths if place[0] == span.file and place <= _place(span)]
-        if not before:
+        if not before or (span.file == self._bindings and before[-1][0] != "parameters"):
             return []
+        if span.file == self._bindings:
+            return list(before[-1][:2])
         if diagnostic.id != MISSING or not diagnostic.about:
             return list(before[-1])
         return [*(before[-1][:2] if before[-1][0] == "components" else ()), *diagnostic.about.split(".")]

@@ -26,6 +26,7 @@ from epg.connect.draft import RemoveValue, SetEnds, SetValue
 from epg.connect.editor import Editor
 from epg.connect.excerpt import excerpt
 from epg.connect.files import Unsavable
+from epg.connect.forms import PARAMETERS
 from epg.connect.other_targets import new_errors, readers
 from epg.connect.overview import Overview
 from epg.connect.pictures import draw
@@ -290,14 +291,19 @@ class Session:
 
     def _fill(self, body: Body) -> None:
         """Gives values the texts of their fields, in one step.  An empty text means the default."""
-        editor = self._of_the_user()
         changes = [(keys(each.get("path")), text(each, "text", "").strip()) for each in bodies(body, "changes")]
+        editor = self._holding([path for path, _ in changes])
         editor.edit(tuple(c for path, wanted in changes for c in fill(editor.forms, editor.loaded, path, wanted)))
 
     def _take_back(self, body: Body) -> None:
         """Removes a value from the project's own file: the inherited value, or the default, holds again."""
-        editor = self._of_the_user()
-        editor.edit(tuple(take_back(editor.forms, editor.loaded, keys(body.get("path")))))
+        path = keys(body.get("path"))
+        editor = self._holding([path])
+        editor.edit(tuple(take_back(editor.forms, editor.loaded, path)))
+
+    def _holding(self, paths: Sequence[Sequence[str]]) -> Editor:
+        """The editor.  Parameters of the model are in the bindings, all other values in the ``.tcf``."""
+        return self._opened() if all(path[0] == PARAMETERS for path in paths) else self._of_the_user()
 
     def _add(self, body: Body) -> None:
         """Adds a component.  Pins that are not given are free ones that fit."""

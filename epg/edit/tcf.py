@@ -34,6 +34,8 @@ COMPONENTS = "components"
 _Change = Callable[[str, tuple[str, ...], Value], str]
 _ORDER = ("version", "extends", "target", "node", "namespace", "clocks", "control", "communication", COMPONENTS)
 """The usual order of the keys of a ``.tcf``."""
+_LISTS = ((COMPONENTS,), ("parameters",))
+"""The sections with a line for each entry, also if they are short; the second one is that of bindings."""
 _WIDEST = 100
 """The largest number of characters of a line with a new map; a longer map gets a line for each key."""
 
@@ -173,7 +175,7 @@ def _write(text: str, path: tuple[str, ...], value: Value) -> str:
     if not is_block or not isinstance(value, Mapping) or not value:
         return yaml_edit.replace(text, path, line)
     width = 2 * len(path) + len(path[-1]) + len(line)
-    if path != (COMPONENTS,) and width <= _WIDEST:
+    if path not in _LISTS and width <= _WIDEST:
         return yaml_edit.replace(text, path, line)
     return yaml_edit.replace_by_lines(text, path, [f"  {each}" for each in _block(value, len(path))])
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -237,3 +238,36 @@ def test_the_other_target_can_be_opened(shared: tuple[Session, Path]) -> None:
     state = session.act("open", {"target": "second"})
     assert state["forms"]["shared"] == []
     assert state["forms"]["values"]["components.position_x.topic"]["how"] == "file"
+
+
+def test_a_parameter_of_the_model_is_set_in_the_bindings(jiwy: Session, new_project: Path) -> None:
+    (section,) = [each for each in jiwy.state()["forms"]["settings"] if each["title"].startswith("Parameters")]
+    name, exported = section["fields"][0]["name"], section["fields"][0]["default"]
+    path = ["parameters", name]
+    body = {"changes": [{"path": path, "text": "2.5"}]}
+    state = jiwy.act("fill", body)
+    assert problems(state) == [] and len(diff(state)) == 2
+    assert diff(state)[0] == "+parameters:" and diff(state)[1].endswith(": 2.5") and float(exported) != 2.5
+    assert state["forms"]["values"][f"parameters.{name}"]["file"] == str(new_project / "robot.bindings.yaml")
+    with pytest.raises(Refused, match="'fast' is not a number"):
+        jiwy.act("fill", {"changes": [{"path": path, "text": "fast"}]})
+    state = jiwy.act("take_back", {"path": path})
+    assert diff(state) == [] and f"parameters.{name}" not in state["forms"]["values"]
+
+
+def test_the_limits_of_a_parameter_stay(tmp_path: Path, new_project: Path) -> None:
+    folder = Path(shutil.copytree(new_project, tmp_path / "robot"))
+    bindings = folder / "robot.bindings.yaml"
+    session = session_of(folder)
+    (section,) = [each for each in session.state()["forms"]["settings"] if each["title"].startswith("Parameters")]
+    name = section["fields"][0]["name"]
+    dotted = name.replace("\\", ".")
+    bindings.write_text(f"{bindings.read_text()}parameters:\n  {dotted}: {{value: 1, minimum: 0, maximum: 3}}\n")
+    path = ["parameters", name]
+    state = session.act("fill", {"changes": [{"path": path, "text": "2"}]})
+    assert diff(state) == [
+        f"-  {dotted}: {{value: 1, minimum: 0, maximum: 3}}",
+        f"+  {dotted}: {{value: 2, minimum: 0, maximum: 3}}",
+    ]
+    state = session.act("fill", {"changes": [{"path": path, "text": "5"}]})
+    assert [each["path"] for each in state["diagnostics"] if each["id"] == "out-of-range"] == [["parameters", dotted]]

@@ -11,7 +11,7 @@ import pytest
 import epg.edit.tcf
 from epg.diagnostics import Diagnostics
 from epg.documents.yaml_file import parse_yaml
-from epg.edit.tcf import Value, remove_value, set_value
+from epg.edit.tcf import Value, remove_value, rename_key, set_value
 from epg.edit.yaml_edit import CannotEdit
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -40,6 +40,15 @@ def test_only_that_changes(what: str) -> None:
     assert set_value("\ufeff" + before, "robot.tcf", ["extends"], name) == "\ufeff" + after
     root = parse_yaml(after, "robot.tcf", Diagnostics())
     assert root is not None and root["extends"].value == name
+
+
+def test_a_key_is_renamed_at_its_place() -> None:
+    text = "components:\n  # the lamp\n  light: {kind: x}  # red\n  'on': {kind: y}\n  last: {kind: z}\n"
+    changed = rename_key(text, "robot.tcf", ["components", "light"], "lamp")
+    assert changed == text.replace("light:", "lamp:")
+    assert rename_key(text, "robot.tcf", ["components", "on"], "start") == text.replace("'on'", "'start'")
+    with pytest.raises(CannotEdit, match="there is no 'components.dark'"):
+        rename_key(text, "robot.tcf", ["components", "dark"], "lamp")
 
 
 @pytest.mark.parametrize("path", CONFIGURATIONS, ids=lambda path: path.name)

@@ -8,6 +8,17 @@ import { attempt, openTab, say, ui } from "./ui.js";
 
 export const words = (name) => name.replaceAll("_", " ");
 
+// The names of the model's parameters stay as they are in the model.
+/** @param {Field} field */
+const titleOf = (field) => (field.path[0] === "parameters" ? field.name : words(field.name));
+
+// The model's parameters are in the bindings, which can be changed although the .tcf cannot.
+/**
+ * @param {State} state
+ * @param {Field} field
+ */
+const isLocked = (state, field) => (field.path[0] === "parameters" ? !state.editable : Boolean(state.forms.locked));
+
 /**
  * The fields of the values below `base`.
  * @param {State} state
@@ -34,7 +45,7 @@ function row(state, base, field) {
     label(name, field),
     control(field, value?.text || "", {
       id: name,
-      disabled: Boolean(state.forms.locked) || value?.how === "call",
+      disabled: isLocked(state, field) || value?.how === "call",
       "aria-describedby": `${name}-hint`,
       onchange: (event) => fill(path, event.target.value.trim()),
     }),
@@ -107,7 +118,7 @@ function group(state, base, field) {
 /** @param {Field} field */
 export function label(name, field) {
   const marks = field.required ? h("span.muted", " (required)") : null;
-  return h("label", { for: name }, words(field.name), marks);
+  return h("label", { for: name }, titleOf(field), marks);
 }
 
 /** @param {Field} field */
@@ -173,8 +184,8 @@ function place(state, path, field, value) {
         {
           key: "back",
           type: "button",
-          disabled: Boolean(state.forms.locked),
-          "aria-label": `Take ${words(field.name)} back to ${to}`,
+          disabled: isLocked(state, field),
+          "aria-label": `Take ${titleOf(field)} back to ${to}`,
           onclick: () => takeBack(path),
         },
         `Back to ${to}`,

@@ -43,6 +43,7 @@ def take_pictures(folder: Path = PICTURES) -> None:
         page.goto(epg.address)
         _start(page, folder)
         _wires(page, epg, folder)
+        _component(page, folder)
         _pins(page, folder)
         _build(page, epg, folder)
         _simulate(page, folder)
@@ -88,6 +89,19 @@ def _pins(page: Any, folder: Path) -> None:
     page.get_by_label("Signal").select_option("pwm_pan.value")
     page.locator(".pins button").first.wait_for()
     _take(page, folder, "pins")
+    page.get_by_role("button", name="Smaller").click()
+    page.get_by_role("tab", name="Problems").click()
+
+
+def _component(page: Any, folder: Path) -> None:
+    page.get_by_role("button", name="guard_pan", exact=True).first.click()
+    page.get_by_role("button", name="Larger").click()
+    page.get_by_label("duty").first.fill("0.4")
+    page.get_by_label("duty").first.press("Enter")
+    page.get_by_role("button", name="Take duty back to 0.3").wait_for()
+    page.evaluate("document.activeElement.blur()")
+    _take(page, folder, "component")
+    page.get_by_role("button", name="Undo").click()
     page.get_by_role("button", name="Smaller").click()
     page.get_by_role("tab", name="Problems").click()
 
