@@ -47,7 +47,7 @@ def test_a_key_is_renamed_at_its_place() -> None:
     changed = rename_key(text, "robot.tcf", ["components", "light"], "lamp")
     assert changed == text.replace("light:", "lamp:")
     assert rename_key(text, "robot.tcf", ["components", "on"], "start") == text.replace("'on'", "'start'")
-    with pytest.raises(CannotEdit, match="there is no 'components.dark'"):
+    with pytest.raises(CannotEdit, match=r"there is no 'components\.dark'"):
         rename_key(text, "robot.tcf", ["components", "dark"], "lamp")
 
 
