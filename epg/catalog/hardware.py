@@ -134,7 +134,8 @@ class Soc:
     tools, for platforms that its family implements.  ``clocks`` have the frequencies of the chip's file.
     ``cubemx_name`` is the beginning of its name in STM32CubeMX, or empty; ``cubemx_clocks`` maps clocks to their keys
     there.  ``identity`` is the chip's name in the output of the tool that flashes its family, or empty;
-    ``identity_register`` is the register from which that tool reads it, or None.  The port layer takes ``dma_streams``
+    ``identity_register`` is the register from which that tool reads it, or None.  ``drive`` is the Board-ID of a drive
+    on which its boot program takes UF2 files, or empty.  The port layer takes ``dma_streams``
     when a target starts: ``dma_users`` maps a class to their number for each claim that carries bytes.
     """
 
@@ -153,6 +154,7 @@ class Soc:
     cubemx_clocks: Mapping[str, str]
     identity: str
     identity_register: int | None
+    drive: str
     dma_streams: tuple[str, ...]
     dma_users: Mapping[str, int]
     files: tuple[Path, ...]  # its own, and those of the chips that it extends
@@ -291,6 +293,7 @@ def make_soc(node: YamlNode, folder: Path) -> Soc:
         cubemx_clocks=MappingProxyType({k: str(v.value) for k, v in map_of(node, "cubemx", "clocks").items()}),
         identity=text_of(node["identity"], "value") if "identity" in node else "",
         identity_register=register.value if register is not None and isinstance(register.value, int) else None,
+        drive=text_of(node["identity"], "drive") if "identity" in node and "drive" in node["identity"] else "",
         dma_streams=texts_of(node, "dma", "streams"),
         dma_users=MappingProxyType({k: int(str(v.value)) for k, v in map_of(node, "dma", "users").items()}),
         files=_files(node, folder / "soc.yaml"),

@@ -158,6 +158,12 @@ class Activity:
             if timer is not None:
                 timer.cancel()
 
+    def progress(self, step: str, done: int, total: int) -> None:
+        """Shows the progress of work without a program."""
+        with self._lock:
+            self._step, self._done, self._total = step, done, total
+        self._changed()
+
     def read(self, line: str) -> None:
         """Keeps a line of output, and takes progress and messages from it."""
         text = plain(line[: 2 * WIDEST])[:WIDEST]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a session runs: builds, simulations and programs, one at a time.  The last one of each is kept to show it."""
+"""What a session runs, one at a time: builds, simulations, programs, and writing to boards.  The last are kept."""
 
 from __future__ import annotations
 
@@ -15,8 +15,10 @@ from epg.connect.build.run import Build, configuration_of
 from epg.connect.places import Places
 from epg.connect.projects import Job
 from epg.connect.run.find_simulation import Simulation, simulations_of
+from epg.connect.run.flash import Boards, FlashRun, boards_for
 from epg.connect.run.program import ProgramRun, command_of
 from epg.connect.run.simulate import SimulationRun, commands_of
+from epg.resolve.application import Application
 from epg.source import Span
 
 
@@ -28,12 +30,14 @@ class Runs:
 
     def __init__(self, changed: Callable[[], None]) -> None:
         self._changed = changed
-        self._build, self._simulation, self._program = Build(changed), SimulationRun(changed), ProgramRun(changed)
+        self._build, self._simulation = Build(changed), SimulationRun(changed)
+        self._program, self._flash = ProgramRun(changed), FlashRun(changed)
+        self._boards: Boards | None = None
         self._questions: dict[str, dict[str, Any] | None] = {}
 
     @property
     def _activities(self) -> dict[str, Activity]:
-        return {"build": self._build, "simulation": self._simulation, "program": self._program}
+        return {"build": self._build, "simulation": self._simulation, "program": self._program, "flash": self._flash}
 
     @property
     def running(self) -> bool:
@@ -47,7 +51,8 @@ class Runs:
     def check_idle(self) -> None:
         for name, activity in self._activities.items():
             if activity.is_running:
-                raise Refused(f"a {name} is running", "wait for it, or cancel it", 409)
+                what = {"flash": "a board is being written"}.get(name, f"a {name} is running")
+                raise Refused(what, "wait for it, or cancel it", 409)
 
     def ask(
         self, job: Job, configuration: Configuration | None, agreed: str, *, anyway: bool = False
@@ -103,6 +108,25 @@ class Runs:
             self._program = ProgramRun(self._changed)
             self._program.start(program)
 
+    def find_boards(self, job: Job, application: Application) -> None:
+        """Looks for boards to which the products of the last build can be written.  Raises Refused."""
+        self.check_idle()
+        made = [Path(each["path"]) for each in self._build.state()["products"]]
+        if not made:
+            raise Refused("there is no file for the board yet", "generate first", 409)
+        self._boards = boards_for(job, application, made)
+
+    def flash(self, id: str, *, replace: bool) -> None:
+        """Writes the product to the board ``id``, which :meth:`find_boards` has found and the user has confirmed."""
+        self.check_idle()
+        boards = self._boards or Boards()
+        found = [board for board in boards.found if board.id == id]
+        if not found:
+            raise Refused(f"there is no board '{id}'", "look for boards again", 409)
+        self._boards = None
+        self._flash = FlashRun(self._changed)
+        self._flash.start(boards, found[0], replace=replace)
+
     def download(self, path: str) -> bytes:
         """The contents of a product of the last build.  Raises Refused for other files."""
         try:
@@ -129,7 +153,8 @@ class Runs:
 
     def forget(self) -> None:
         self._build, self._simulation = Build(self._changed), SimulationRun(self._changed)
-        self._program = ProgramRun(self._changed)
+        self._program, self._flash = ProgramRun(self._changed), FlashRun(self._changed)
+        self._boards = None
         self._questions = {}
 
     def state(self, places: Places | None) -> dict[str, Any]:
@@ -141,6 +166,7 @@ class Runs:
                 assert places is not None
                 message["port"] = places.port_at(Span(message["file"], message["line"], message["column"]))
             states[name] = state
+        states["flash"]["boards"] = self._boards.data() if self._boards is not None else None
         return states
 
     def lines(self, name: str, start: int) -> list[str]:

@@ -107,6 +107,7 @@ class Session:
             "overview": self._show_overview,
             "generate": self._generate,
             "simulate": self._simulate,
+            "flash": self._flash,
             "run": lambda body: self.runs.run_program(text(body, "path"), text(body, "run", "")),
             "done": lambda body: self.ended.set(),
         }
@@ -443,6 +444,17 @@ class Session:
             self._check_ready()
         self._save({})
         self.runs.simulate(simulation, anyway=anyway)
+
+    def _flash(self, body: Body) -> None:
+        """Without "board": looks for boards.  With it: writes the last product to this board."""
+        board = text(body, "board", "")
+        if board:
+            self.runs.flash(board, replace=boolean(body, "replace"))
+            return
+        application = self._opened().loaded.parts.application
+        if application is None:
+            raise Refused("the target has errors", "correct the errors in the messages", 409)
+        self.runs.find_boards(self._opened().job, application)
 
     def _missing_wires(self) -> dict[str, str]:
         """The proposed wires, if they correct all errors of the target; else none."""

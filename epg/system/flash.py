@@ -29,6 +29,7 @@ from epg.emit.cmake import PathNames
 from epg.emit.outputs import application_outputs
 from epg.resolve.application import Application
 from epg.ros.robot import Robot, robot_of
+from epg.source import Span
 from epg.system.check_system import CheckedSystem
 from epg.system.images import built_hash, image_file, images_of
 from epg.system.system import SystemTarget
@@ -53,22 +54,19 @@ class UnusableTool(Exception):
 
 @dataclass(frozen=True)
 class Job:
-    """The image of one target, and its board.
+    """The image of the target ``name``, and its board.  ``span`` is the position of messages about it.
 
     ``board`` are the arguments that choose the board.  ``shown`` is the board in messages.
     """
 
-    target: SystemTarget
+    name: str
+    span: Span
     application: Application
     flashing: Flashing
     image: Path
     board: tuple[str, ...]
     serial: str
     shown: str
-
-    @property
-    def name(self) -> str:
-        return self.target.name
 
     def arguments(self, which: Sequence[str]) -> list[str]:
         """The arguments ``which`` of the tool, for this image and this board."""
@@ -109,7 +107,7 @@ def plan(checked: CheckedSystem, names: Collection[str], images: Path, diagnosti
         else:
             files = application_outputs(application, checked.loader.roots, PathNames(None))
             description = json.loads(files[f"{name}.json"])
-            reason, hint = _problem(application, flashing, robot_of(checked.system.path, description))
+            reason, hint = flash_problem(application, flashing, robot_of(checked.system.path, description))
         if reason or flashing is None:
             diagnostics.error("not-flashable", target.span, f"EPG cannot flash '{name}': {reason}", hint=hint)
             continue
@@ -120,12 +118,15 @@ def plan(checked: CheckedSystem, names: Collection[str], images: Path, diagnosti
         chosen = _board(target, flashing, by_family[application.target.soc.family], diagnostics)
         if image is not None and chosen is not None:
             board, serial, shown = chosen
-            jobs.append(Job(target, application, flashing, image, board, serial, shown))
+            jobs.append(Job(name, target.span, application, flashing, image, board, serial, shown))
     return jobs
 
 
-def _problem(application: Application, flashing: Flashing, robot: Robot) -> tuple[str, str]:
-    """The reason why the boards of a target cannot be flashed, and a hint; empty texts if they can be flashed."""
+def flash_problem(application: Application, flashing: Flashing, robot: Robot | None) -> tuple[str, str]:
+    """The reason why the boards of a target cannot be flashed, and a hint; empty texts if they can be flashed.
+
+    ``robot`` is the description of a target of a system, whose boards are known by their serial numbers.
+    """
     target = application.target
     if not target.soc.identity:
         hint = "write 'identity' in its soc.yaml: docs/adding-a-board.md describes it"
@@ -133,10 +134,33 @@ def _problem(application: Application, flashing: Flashing, robot: Robot) -> tupl
     if any("{name}" in part for part in flashing.write) and flashing.tool not in target.board.sdks:
         hint = f"write 'sdks: {{{flashing.tool}: <its name there>}}' in its board.yaml"
         return f"the name of the board '{target.board.name}' in {flashing.tool} is not known", hint
-    if flashing.named_by == "serial" and robot.usb_serial is not None:
+    if robot is not None and flashing.named_by == "serial" and robot.usb_serial is not None:
         hint = "remove 'communication.usb.serial', or write the image by hand"
         return f"its board has the serial number '{robot.usb_serial}' only while it runs the program", hint
     return "", ""
+
+
+def board_of(device: UsbDevice, flashing: Flashing) -> tuple[tuple[str, ...], str, str]:
+    """The arguments that choose an attached board, its serial number, and the board in messages."""
+    if device.id not in flashing.without_serial:
+        return _chosen(flashing.by_serial, {"serial": device.serial}), device.serial, device.serial
+    place = {"bus": device.bus, "address": device.address}
+    return _chosen(flashing.by_place, place), "", f"at bus {device.bus}, address {device.address}"
+
+
+def run_command(command: Sequence[str], shown: bool) -> tuple[int, str]:
+    """Runs a command of a tool.  Returns its exit status and its output, which is printed instead if ``shown``."""
+    if shown:
+        return subprocess.run(command, stdin=subprocess.DEVNULL, stdout=sys.stderr).returncode, ""
+    done = subprocess.run(
+        command,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+    )
+    return done.returncode, done.stdout
 
 
 def _board(
@@ -152,11 +176,7 @@ def _board(
         return _chosen(flashing.by_serial, {"serial": serial}), serial, serial
     devices = attached(flashing.usb)
     if devices is not None and len(devices) == len(rivals) == 1:
-        device = devices[0]
-        if device.id not in flashing.without_serial:
-            return _chosen(flashing.by_serial, {"serial": device.serial}), device.serial, device.serial
-        place = {"bus": device.bus, "address": device.address}
-        return _chosen(flashing.by_place, place), "", f"at bus {device.bus}, address {device.address}"
+        return board_of(devices[0], flashing)
     if len(rivals) > 1:
         reason = f"the system has {len(rivals)} targets for such boards"
     elif devices is None:
@@ -189,7 +209,7 @@ def _listed(devices: Sequence[UsbDevice] | None, flashing: Flashing) -> str:
 class Flasher:
     """Runs jobs.  ``programs`` are the programs of the tools, ``show`` prints a line.
 
-    With ``replace``, programs of other targets are overwritten.
+    With ``replace``, programs of other targets are overwritten.  ``run_tool`` runs a command, as :func:`run_command`.
     """
 
     jobs: Sequence[Job]
@@ -197,6 +217,7 @@ class Flasher:
     diagnostics: Diagnostics
     show: Callable[[str], None]
     replace: bool = False
+    run_tool: Callable[[Sequence[str], bool], tuple[int, str]] = run_command
     restarted: list[Job] = field(default_factory=list)
 
     def dry_run(self) -> None:
@@ -225,10 +246,9 @@ class Flasher:
         self.diagnostics.stop_if_errors()
         for number, job in enumerate(self.jobs):
             self._show(job, job.flashing.write)
-            command = self._command(job, job.flashing.write)
-            done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=sys.stderr)
-            if done.returncode != 0:
-                self._report_failure(job, done.returncode, self.jobs[:number], self.jobs[number + 1 :])
+            status, _ = self.run_tool(self._command(job, job.flashing.write), True)
+            if status != 0:
+                self._report_failure(job, status, self.jobs[:number], self.jobs[number + 1 :])
 
     def _prepare(self) -> None:
         running = []
@@ -265,12 +285,12 @@ class Flasher:
             title = chip.title if chip.identity in chip.title else f"{chip.title}, which is {chip.identity}"
             message = f"the board {job.shown} {other}, but '{job.name}' is for the {title}"
             hint = f"correct '{job.flashing.named_by}' of '{job.name}', or attach another board"
-            self.diagnostics.error("wrong-chip", job.target.span, message, hint=hint)
+            self.diagnostics.error("wrong-chip", job.span, message, hint=hint)
         program = re.search(job.flashing.program, facts, re.MULTILINE) if job.flashing.program else None
         if program is not None and program[1] != job.name and not self.replace:
             message = f"the board {job.shown} has the program of the target '{program[1]}', and not of '{job.name}'"
             hint = f"correct '{job.flashing.named_by}', or add --replace if '{job.name}' shall replace it"
-            self.diagnostics.error("other-program", job.target.span, message, hint=hint)
+            self.diagnostics.error("other-program", job.span, message, hint=hint)
 
     def _is_attached(self, job: Job) -> bool:
         """False if this operating system lists USB devices, and the board is not among them."""
@@ -281,7 +301,7 @@ class Flasher:
         message = f"the board {job.shown} of '{job.name}' does not answer: {_last(output)}"
         hint = "attach it" + (f", or {job.flashing.by_hand}" if job.flashing.by_hand else "")
         hint += _listed(attached(job.flashing.usb), job.flashing)
-        self.diagnostics.error("board-not-found", job.target.span, message, hint=hint)
+        self.diagnostics.error("board-not-found", job.span, message, hint=hint)
 
     def _report_failure(self, job: Job, status: int, done: Sequence[Job], others: Sequence[Job]) -> None:
         tool = job.flashing.tool
@@ -289,7 +309,7 @@ class Flasher:
         groups = [("written", done), ("not written", others)]
         listed = [f"{title}: {', '.join(each.name for each in group)}" for title, group in groups if group]
         hint = ". ".join([*listed, f"correct the error that {tool} shows above, and flash all boards again"])
-        self.diagnostics.error("flash-failed", job.target.span, message, hint=hint)
+        self.diagnostics.error("flash-failed", job.span, message, hint=hint)
         self.diagnostics.stop_if_errors()
 
     def _wait(self, job: Job) -> tuple[bool, str]:
@@ -308,15 +328,8 @@ class Flasher:
 
     def _answer(self, job: Job, arguments: Sequence[str]) -> tuple[bool, str]:
         """True if the command succeeds, and its output."""
-        done = subprocess.run(
-            self._command(job, arguments),
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            errors="replace",
-        )
-        return done.returncode == 0, done.stdout
+        status, output = self.run_tool(self._command(job, arguments), False)
+        return status == 0, output
 
     def _command(self, job: Job, arguments: Sequence[str]) -> list[str]:
         return [self.programs[job.flashing.tool], *job.arguments(arguments)]

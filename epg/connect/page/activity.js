@@ -10,15 +10,15 @@ import { current, getJson } from "./server.js";
 import { attempt, draw, openTab, say, ui } from "./ui.js";
 
 /**
- * @typedef {"build" | "simulation" | "program"} Name
+ * @typedef {"build" | "simulation" | "program" | "flash"} Name
  * @typedef {{lines: string[], fetching: boolean, open: boolean}} Log
  */
 
 /** @type {Name[]} */
-const NAMES = ["build", "simulation", "program"]; // keys of the state
+const NAMES = ["build", "simulation", "program", "flash"]; // keys of the state
 
 /** @type {Record<Name, string>} */
-const TABS = { build: "build", simulation: "simulation", program: "build" };
+const TABS = { build: "build", simulation: "simulation", program: "build", flash: "build" };
 
 /** @type {Record<string, Log>} */
 const logs = Object.fromEntries(NAMES.map((name) => [name, { lines: [], fetching: false, open: false }]));
@@ -220,10 +220,11 @@ export function messagesPart(activity, name, again) {
 }
 
 /**
- * The path of a file with a button that copies it.
+ * The path of a file with a button that copies it, and other buttons.
  * @param {string} path
  */
-export const pathPart = (path) => h("p.product-path", h("code", path), copyButton("Copy path", path));
+export const pathPart = (path, ...buttons) =>
+  h("p.product-path", h("code", path), copyButton("Copy path", path), buttons);
 
 /**
  * @param {Name} name

@@ -13,6 +13,7 @@ import {
   stepText,
 } from "./activity.js";
 import { h } from "./dom.js";
+import { flashButton, flashPart } from "./flash.js";
 import { isError } from "./problems.js";
 import { current, getPicture } from "./server.js";
 import { attempt, change, openTab } from "./ui.js";
@@ -50,6 +51,9 @@ export function buildPanel(state) {
   }
   return [
     outcomePart(build, buildOutcome(state)),
+    flashButton(state),
+    flashPart(state),
+    programPart(state),
     build.products.length &&
       h(
         "ul.products",
@@ -57,7 +61,6 @@ export function buildPanel(state) {
         build.products.map((made) => product(state, made)),
       ),
     messagesPart(build, "Messages of the build", () => start(true)),
-    programPart(state),
     logPart("build", build),
   ];
 }
@@ -72,9 +75,8 @@ function product(state, { path, what, runs }) {
   return h(
     "li",
     h("p", what),
-    pathPart(path),
-    h(
-      "p.uses",
+    pathPart(
+      path,
       runs &&
         h(
           "button",

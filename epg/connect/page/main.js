@@ -13,6 +13,7 @@ import { drawDialog } from "./dialog.js";
 import { dock } from "./dock.js";
 import { h, render } from "./dom.js";
 import { listenForDrags } from "./drag.js";
+import { flashOutcome } from "./flash.js";
 import { drawStops, isKnown, listenForPresses } from "./handles.js";
 import { header } from "./header.js";
 import { modelHead, modelPorts } from "./ports.js";
@@ -109,7 +110,7 @@ window.addEventListener("beforeunload", (event) => {
 
 listenForDrags(part("main"));
 listenForPresses(part("main"));
-const OUTCOMES = { build: buildOutcome, simulation: simulationOutcome, program: programOutcome };
+const OUTCOMES = { build: buildOutcome, simulation: simulationOutcome, program: programOutcome, flash: flashOutcome };
 follow(() => {
   if (current() && !hasEnded()) followActivities(current(), OUTCOMES);
   draw();

@@ -97,6 +97,7 @@ interface StartState {
   build: Build;
   simulation: SimulationRun;
   program: ProgramRun;
+  flash: FlashRun;
   /** Null while EPG looks for them. */
   simulations: Simulations | null;
 }
@@ -363,6 +364,16 @@ interface Product {
   runs: boolean;
 }
 
+interface FlashRun extends Activity {
+  /** What was written to where; empty before the first time. */
+  file: string;
+  board: string;
+  /** True if the board has the program of another target. */
+  can_replace: boolean;
+  /** The boards that were found and wait for a confirmation. Without one, "problem" is the reason. */
+  boards: { found: { id: string; shown: string; file: string }[]; problem: string; hint: string } | null;
+}
+
 interface ProgramRun extends Activity {
   /** The path of the program; empty before the first run. */
   program: string;
@@ -442,6 +453,8 @@ interface Actions {
   simulate: { run?: string; anyway?: boolean; accept?: boolean; simulation?: string };
   /** Runs a product of the last build in real time. */
   run: { path: string; run?: string };
+  /** Without "board", looks for boards; with it, writes the last product to this board. */
+  flash: { board?: string; replace?: boolean };
   cancel: Nothing;
   done: Nothing;
 }
