@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import secrets
 import shutil
 import subprocess
 from pathlib import Path
@@ -33,7 +34,7 @@ def _run(package: str, *arguments: str | Path) -> str:
     (program,) = json.loads((folder / "package.json").read_text(encoding="utf-8"))["bin"].values()
     command = [shutil.which("node") or "node", str(folder / program), *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True, cwd=HERE)
-    return "" if done.returncode == 0 else (done.stdout + done.stderr)[:8000] or "no words"
+    return "" if done.returncode == 0 else (done.stdout + done.stderr)[:8000] or f"{package} has failed"
 
 
 def test_the_linter_has_no_complaint() -> None:
@@ -97,11 +98,12 @@ def _started() -> list[dict[str, Any]]:
 def _opened(folder: Path) -> list[dict[str, Any]]:
     """States with an open target: with changes, mistakes, a conflict, hardware, and a build."""
     session = Session([], model=ROOT / "examples/jiwy/model")
-    body = {"folder": str(folder / "arm"), "name": "arm", "configuration": "host_jiwy"}
+    arm = folder / secrets.token_hex(4)  # a folder in which the user has not agreed to build
+    body = {"folder": str(arm), "name": "arm", "configuration": "host_jiwy"}
     opened = [session.act("create", body), session.act("disconnect", {"port": "pwm_tilt"})]
     ends = [{"reference": "pwm_pan", "scale": "1/2", "limits": ["-1", "1"]}]
     opened.append(session.act("connect", {"port": "pwm_tilt", "ends": ends}))
-    bindings = folder / "arm/arm.bindings.yaml"
+    bindings = arm / "arm.bindings.yaml"
     text = bindings.read_text(encoding="utf-8")
     bindings.write_text("inputs: [\n", encoding="utf-8")
     opened.append(session.wait(session.state()["version"], 10))
@@ -114,7 +116,7 @@ def _opened(folder: Path) -> list[dict[str, Any]]:
     opened += [one_axis.state(), one_axis.act("accept", {})]
     assert opened[-1]["hardware"] and opened[-1]["unused"]
 
-    cmake = folder / "arm/CMakeLists.txt"
+    cmake = arm / "CMakeLists.txt"
     cmake.write_text('message(FATAL_ERROR "No!")\n' + cmake.read_text(encoding="utf-8"), encoding="utf-8")
     opened.append(session.act("generate", {}))
     state = session.act("generate", {"run": opened[-1]["build"]["ask"]["key"]})
