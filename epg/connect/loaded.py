@@ -27,7 +27,7 @@ from epg.models import Model, load_model
 from epg.models.folders import searched_folders
 from epg.models.neighbours import Neighbours
 from epg.project import Parts, Request, hardware_of, load_configuration, load_parts
-from epg.resolve.allocation import Hardware
+from epg.resolve.allocation import Hardware, as_written
 from epg.resolve.claims import component_claims, tick_claims
 from epg.resolve.first_fit import Signal, complete_claims, signals_of
 from epg.resolve.matching import Match, match_ports
@@ -118,6 +118,13 @@ class Loaded:
         if configuration is None:
             return {}
         return allocate_hardware(configuration, self.period, Diagnostics()) or {}
+
+    @cached_property
+    def wiring(self) -> Hardware:
+        """The hardware; while errors prevent it, the pins as the ``.tcf`` states them."""
+        if self.hardware or self.wired is None:
+            return self.hardware
+        return as_written(component_claims(self.wired), self.wired.target)
 
     def pin_options(self, signal: Signal) -> tuple[PinOption, ...]:
         """The pins of the board for ``signal``; empty if there is no such signal."""

@@ -17,8 +17,6 @@ from epg.connect.draft import SetValue
 from epg.connect.loaded import Loaded
 from epg.documents.items import pin_list
 from epg.graph.wiring import Choice, draw_wiring, printed_names
-from epg.resolve.allocation import as_written
-from epg.resolve.claims import component_claims
 from epg.resolve.first_fit import Signal, first_fit, signals_of, usable_pin
 from epg.resolve.pin_options import PinOption
 
@@ -75,11 +73,10 @@ def draw_pinout(loaded: Loaded, title: str, signal: Signal | None = None, *, for
     configuration = loaded.wired
     if configuration is None or configuration.target.board.layout is None:
         return None
-    hardware = loaded.hardware or as_written(component_claims(configuration), configuration.target)
     wrong = [signal for signal, _ in loaded.pin_problems]
     choice = Choice(signal, _asked(loaded, signal)[1]) if signal is not None else None
     return draw_wiring(
-        configuration.target, configuration.components, hardware, title, choice, wrong, for_page=for_page
+        configuration.target, configuration.components, loaded.wiring, title, choice, wrong, for_page=for_page
     )
 
 

@@ -87,7 +87,7 @@ def _port(port: Port) -> Data:
 
 def _components(loaded: Loaded) -> list[Data]:
     claims: dict[str, dict[str, Any]] = {}
-    for (owner, claim), found in loaded.hardware.items():
+    for (owner, claim), found in loaded.wiring.items():
         claims.setdefault(owner, {})[claim] = found
     return [_component(component, loaded, claims.get(component.name, {})) for component in loaded.components.values()]
 
@@ -102,7 +102,7 @@ def _component(component: Component, loaded: Loaded, claims: dict[str, Any]) -> 
         "kind": kind.name,
         "summary": kind.summary,
         "where": wire_texts(kind, claims, target) if target is not None else [],
-        "peripheral": ", ".join(name for name in resources if not name.startswith("pin ")),
+        "peripheral": ", ".join(name for name in resources if name and not name.startswith("pin ")),
         "topic": absolute_topic(str(topic), configuration.namespace, configuration.node)
         if topic and configuration is not None
         else "",

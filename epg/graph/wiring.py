@@ -388,7 +388,15 @@ def _side(picture: Picture, layout: Layout, frame: _Frame, side: str, parts: Seq
             picture.text(tx, y + 4, terminal.signal, anchor, 11)
             what = f"{terminal.component} {terminal.signal}"
             label = ", ".join(told.pop(terminal.place, []))  # the first wire of a contact has the label of all
-            wires.append(_Wire(terminal.place, y, label, f"{what}: {terminal.resource}", f"w{part.colour}"))
+            wires.append(
+                _Wire(
+                    terminal.place,
+                    y,
+                    label,
+                    what + (f": {terminal.resource}" if terminal.resource else ""),
+                    f"w{part.colour}",
+                )
+            )
             if for_page:
                 data = {"signal": f"{terminal.component}.{terminal.signal}"}
                 picture.hit(x, y - frame.pitch / 2, wide, frame.pitch, data, f"{what}: {terminal.contact.name}")

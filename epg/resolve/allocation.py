@@ -128,13 +128,16 @@ def allocate(
 
 
 def as_written(claims: Sequence[Claim], target: Target) -> Hardware:
-    """The pins of claims as the ``.tcf`` states them, also if they are in conflict.  Pins of no chip are left out."""
+    """The pins of claims as the ``.tcf`` states them, also if they are in conflict, without peripherals.
+
+    Pins that the chip does not have are left out.
+    """
     result: dict[ClaimKey, Assignment] = {}
     for claim in claims:
         names = {signal: target.board.pin_name(str(stated.value)) for signal, stated in claim.signals.items()}
         pins = {signal: target.soc.numbers[pin] for signal, pin in names.items() if pin in target.soc.numbers}
         if target.has_pins and pins:
-            result[claim.key] = Assignment(MappingProxyType(pins), 0, 0, MappingProxyType({}), "see the messages")
+            result[claim.key] = Assignment(MappingProxyType(pins), 0, 0, MappingProxyType({}), "")
     return MappingProxyType(result)
 
 

@@ -91,6 +91,8 @@ def test_a_conflict_is_drawn(tmp_path: Path) -> None:
     state = epg.state()
     assert [each["id"] for each in state["diagnostics"] if each["severity"] == "error"] == ["pin-used-twice"]
     assert state["pictures"]["wiring"]
+    shown = {each["name"]: each["where"] for each in state["components"]}
+    assert shown["pwm_pan"][0] == "value GP4" and shown["encoder_pan"] == ["a GP10", "b GP11"]
     svg = epg.pinout("", "")
     assert 'class="wrong"' in svg and "an error: see the messages" in svg
     (problem,) = state["pins"]["problems"]

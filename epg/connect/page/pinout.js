@@ -89,7 +89,14 @@ function tools(state, signals, whyNot, shown) {
     !chosen &&
       !whyNot &&
       h("p.muted", { key: "help" }, "Choose a signal here, or click or drag its end in the drawing."),
-    refused && h("p.refusal", { key: "refused", role: "alert" }, icon("error"), ` ${refused.message}. ${refused.hint}`),
+    refused &&
+      h(
+        "p.refusal",
+        { key: "refused", role: "alert" },
+        icon("error"),
+        ` ${refused.message}. `,
+        h("span.hint", refused.hint),
+      ),
     chosen && pinsOf(partsOf(chosen), signals, whyNot, shown),
   ];
 }
@@ -251,6 +258,7 @@ function place(node, svg) {
   const picture = new DOMParser().parseFromString(svg, "image/svg+xml").documentElement;
   picture.setAttribute("width", "100%");
   picture.removeAttribute("height");
+  picture.style.minWidth = "640px"; // a narrower window scrolls
   root.replaceChildren(document.importNode(picture, true));
 }
 
