@@ -77,8 +77,8 @@ def _component_names(root: YamlNode) -> list[str]:
 def _kind_form(kind: Kind, target: Target | None, components: Mapping[str, Component]) -> Data:
     """The form of a component of ``kind``: paths are those below the component.
 
-    ``one_of`` are sets of fields of which a component must set one.  ``unusable`` says why the target cannot have such
-    a component, and is empty if it can.
+    ``one_of`` are sets of fields of which a component must set one, or ``several`` of them.  ``unusable`` says why the
+    target cannot have such a component, and is empty if it can.
     """
     schema = component_schema(kind, with_pins=target is not None and target.has_pins)
     properties = {key: child for key, child in schema["properties"].items() if key != "kind"}
@@ -91,7 +91,9 @@ def _kind_form(kind: Kind, target: Target | None, components: Mapping[str, Compo
         del properties["node"]
     if target is not None and not target.has_pins:
         properties.pop("pins", None)
-    fields = [_field((key,), child, key in schema["required"]) for key, child in properties.items()]
+    first = ("pins", *(use.name for use in kind.uses))
+    keys = sorted(properties, key=lambda key: key not in first)
+    fields = [_field((key,), properties[key], key in schema["required"]) for key in keys]
     for field in fields:
         if field["path"] == ["pins"]:
             field.pop("example", None)
@@ -103,7 +105,10 @@ def _kind_form(kind: Kind, target: Target | None, components: Mapping[str, Compo
         "group": kind.group,
         "summary": kind.summary,
         "fields": fields,
-        "one_of": [list(names) for names in (*kind.exactly_one, *kind.at_least_one)],
+        "one_of": [
+            *({"names": list(names), "several": False} for names in kind.exactly_one),
+            *({"names": list(names), "several": True} for names in kind.at_least_one),
+        ],
         "unusable": _unusable(kind, target),
     }
 

@@ -97,7 +97,7 @@ def test_a_field_says_what_is_possible(folder: Path) -> None:
         (["pins", name], "pin") for name in ("value", "direction_a", "direction_b")
     ]
     encoder = kinds["quadrature_encoder"]
-    assert encoder["one_of"] == [["counts_per_revolution", "span"]]
+    assert encoder["one_of"] == [{"names": ["counts_per_revolution", "span"], "several": False}]
     assert [(part["name"], part["required"]) for part in fields(encoder)["span"]["fields"]] == [
         ("counts", True),
         ("angle", True),
@@ -105,6 +105,8 @@ def test_a_field_says_what_is_possible(folder: Path) -> None:
     guard = fields(kinds["motion_guard"])
     assert (guard["actuator"]["type"], guard["actuator"]["choices"]) == ("reference", ["motor"])
     assert guard["encoder"]["choices"] == ["encoder"]
+    assert list(guard)[:2] == ["actuator", "encoder"]
+    assert kinds["motion_guard"]["one_of"] == [{"names": ["stall", "runaway", "homing"], "several": True}]
     assert fields(kinds["ros_subscriber"])["topic"]["required"]
 
 

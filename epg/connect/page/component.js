@@ -3,7 +3,7 @@
 
 import { addComponent, copyComponent, removeComponent, renameComponent } from "./component_dialogs.js";
 import { h, id } from "./dom.js";
-import { formFields, formNotes } from "./form.js";
+import { formFields, formNotes, oneOfNotes } from "./form.js";
 import { inline, shortFile } from "./problems.js";
 import { attempt, change, say, ui } from "./ui.js";
 
@@ -77,13 +77,9 @@ function parameters(state, name, kind) {
   return h(
     "section",
     { key: id("form", name), "aria-label": `Parameters of ${name}` },
-    h(
-      "p.form-summary",
-      h("b", name),
-      ` is ${/^an? /.test(form.summary) ? "" : "a component: "}${form.summary} (${kind})`,
-    ),
+    h("p.form-summary", h("b", name), ` (${kind}): ${form.summary}`),
     inline(others(state, base, form.fields)),
-    form.one_of.map((names) => h("p.muted", { key: names.join() }, `Set one of: ${names.join(", ")}.`)),
+    oneOfNotes(form),
     h("div.form-fields", formFields(state, base, first)),
     rest.length > 0 &&
       h(

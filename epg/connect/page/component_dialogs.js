@@ -3,7 +3,7 @@
 
 import { closeDialog, openDialog } from "./dialog.js";
 import { h, id, textField } from "./dom.js";
-import { control, hint, label, words } from "./form.js";
+import { control, hint, label, oneOfNotes, words } from "./form.js";
 import { act, current } from "./server.js";
 import { draw, openTab, say, ui } from "./ui.js";
 
@@ -61,7 +61,7 @@ export function addComponent() {
         oninput: ({ target }) => (typed.name = target.value.trim()),
       }),
       asked.map(ask),
-      form.one_of.map((names) => h("p.muted", `Set one of: ${names.map(words).join(", ")}.`)),
+      oneOfNotes(form),
       alternatives.map(ask),
       form.fields.filter(isPins).map(ask),
       error &&
@@ -90,7 +90,7 @@ export function addComponent() {
   };
 }
 
-const oneOf = (form) => new Set(form.one_of.flat());
+const oneOf = (form) => new Set(form.one_of.flatMap(({ names }) => names));
 
 function kindList(kinds, choose) {
   const all = Object.entries(kinds);
@@ -189,8 +189,8 @@ function missing(form, typed) {
     const lacks = given(field.name) && field.fields?.find((each) => each.required && !given(each.path.join(".")));
     if (lacks) return { message: `'${words(lacks.name)}' of '${words(field.name)}' is empty`, hint: lacks.description };
   }
-  const none = form.one_of.find((names) => !names.some(given));
-  return none ? { message: `one of these must be set: ${none.map(words).join(", ")}`, hint: "" } : null;
+  const none = form.one_of.find(({ names }) => !names.some(given));
+  return none ? { message: `one of these must be set: ${none.names.map(words).join(", ")}`, hint: "" } : null;
 }
 
 function freeName(wanted) {

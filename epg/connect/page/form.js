@@ -59,6 +59,19 @@ function row(state, base, field) {
 const messagesAt = (state, path) => state.diagnostics.filter((each) => each.path?.join(".") === path.join("."));
 
 /**
+ * The fields of which a component must set one.
+ * @param {KindForm} form
+ */
+export const oneOfNotes = (form) =>
+  form.one_of.map(({ names, several }) =>
+    h(
+      "p.muted",
+      { key: names.join() },
+      `Set ${several ? "one or several" : "one"} of: ${names.map(words).join(", ")}.`,
+    ),
+  );
+
+/**
  * Notes above a form: the reason why it cannot be changed, and the other targets that a change touches.
  * @param {State} state
  */
@@ -171,8 +184,9 @@ function place(state, path, field, value) {
   if (!value) return null;
   const { back } = value;
   const text = { own: "in", file: "from", epg: "from EPG's", call: "set in" }[value.how];
-  const where = `${text} ${shortFile(value.file)}, line ${value.line}`;
-  const to = back ? `${back.text} (${shortFile(back.file)})` : field.default ? `default ${field.default}` : "no value";
+  const nameOf = ({ how, file }) => (how === "epg" ? file.split(/[\\/]/).pop() : shortFile(file));
+  const where = `${text} ${nameOf(value)}, line ${value.line}`;
+  const to = back ? `${back.text} (${nameOf(back)})` : field.default ? `default ${field.default}` : "no value";
   return h(
     "p.origin",
     { key: "origin" },

@@ -226,8 +226,8 @@ interface KindForm {
   summary: string;
   /** Their paths are those below a component. */
   fields: Field[];
-  /** Sets of fields of which a component must set one. */
-  one_of: string[][];
+  /** Sets of fields of which a component must set one, or several. */
+  one_of: { names: string[]; several: boolean }[];
   /** The reason why the target cannot have such a component; empty if it can. */
   unusable: string;
 }

@@ -98,7 +98,7 @@ def _component(page: Any, folder: Path) -> None:
     page.get_by_role("button", name="Larger").click()
     page.get_by_label("duty").first.fill("0.4")
     page.get_by_label("duty").first.press("Enter")
-    page.get_by_role("button", name="Take duty back to 0.3").wait_for()
+    page.get_by_role("button", name="Take duty back to 0.3 (jiwy.tcf)").wait_for()
     page.evaluate("document.activeElement.blur()")
     _take(page, folder, "component")
     page.get_by_role("button", name="Undo").click()
