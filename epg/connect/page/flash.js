@@ -15,7 +15,7 @@ export function flashButton(state) {
   const { products } = state.build;
   if (!products.length || products.some((each) => each.runs)) return null;
   return h(
-    "p.uses",
+    "p.flash-row",
     { key: "flash" },
     h("button.primary", { disabled: Boolean(running(state)), onclick: () => look(false) }, "Flash …"),
     h("span.muted", "writes the firmware to a board that is connected to this computer"),
@@ -120,7 +120,7 @@ export function flashPart(state) {
     outcomePart(flash, flashOutcome(state)),
     messagesPart(flash, "Messages about the board", () => look(false)),
     flash.can_replace &&
-      h("p.uses", { key: "replace" }, h("button", { onclick: () => look(true) }, "Replace the other program …")),
+      h("p.flash-row", { key: "replace" }, h("button", { onclick: () => look(true) }, "Replace the other program …")),
     logPart("flash", flash, "Output"),
   );
 }

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from .axe import violations
 from .served import ROOT, Served
 
 Open = Callable[..., Any]
@@ -54,6 +55,12 @@ def test_from_an_export_to_a_moving_robot_in_four_clicks(open_page: Open, tmp_pa
         assert plot.evaluate("async (image) => { await image.decode(); return image.naturalWidth; }") > 600
         assert panel.get_by_role("row").count() == 3, "a line for each axis"
         assert epg.state()["draft"]["external"] is None, "the new build folder is no edit of the project"
+
+        assert violations(page) == []
+        page.set_viewport_size({"width": 400, "height": 700})
+        wide = page.evaluate("document.documentElement.scrollWidth")
+        assert wide <= 400, f"the page is {wide} px wide"
+        page.set_viewport_size({"width": 1280, "height": 800})
 
         # The robot has moved, and only in the simulation: no file enables the target.
         rows = (folder / "simulation/build/tracking.csv").read_text().splitlines()
