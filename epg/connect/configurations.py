@@ -177,13 +177,14 @@ class Configurations:
 class Project:
     """The project for which a configuration is chosen.
 
-    ``chosen`` is the configuration that its ``.tcf`` extends now.  ``fixed`` says why that cannot be changed; it is
-    empty if it can.
+    ``chosen`` is the configuration that its ``.tcf`` extends now, or with ``own_target`` the target that it names.
+    ``fixed`` says why that cannot be changed; it is empty if it can.
     """
 
     chosen: str
     fixed: str
     target: Target | None
+    own_target: bool = False
 
     def reason(self, choice: Choice) -> str:
         """The reason why ``choice`` cannot be taken; empty if it can."""
@@ -191,19 +192,17 @@ class Project:
             return ""
         if self.fixed or choice.problem:
             return self.fixed or choice.problem
-        if not choice.robot:
-            return f"it has no components yet: 'epg new DIR --target {choice.name} --model FOLDER' starts a project"
-        now = self.target
-        if now is not None and (now.platform.name, now.board.name) != _hardware_of(choice.target):
-            return (
-                f"this project is for {now.board.summary} with {now.platform.name}: "
-                f"'epg new DIR --target {choice.name} --model FOLDER' starts a project for this target"
-            )
+        if self.own_target and choice.robot:
+            return f"this project has components of its own: 'extends: {choice.name}.tcf' would add those of a robot"
+        if not self.own_target and not choice.robot:
+            return "this project has the components of a robot: choose one of its configurations"
+        if not choice.target.platform.builds:
+            return _not_built(choice.target)
         return ""
 
 
-def _hardware_of(target: Target) -> tuple[str, str]:
-    return target.platform.name, target.board.name
+def _not_built(target: Target) -> str:
+    return f"EPG can check files for {target.platform.name}, but cannot generate code for it"
 
 
 def _new_reason(choice: Choice, roots: Sequence[Path]) -> str:
@@ -212,7 +211,7 @@ def _new_reason(choice: Choice, roots: Sequence[Path]) -> str:
         return choice.problem
     platform = choice.target.platform
     if not platform.builds:
-        return f"EPG can check files for {platform.name}, but cannot generate code for it"
+        return _not_built(choice.target)
     if project_folder(platform.project_names, roots) is None:
         return f"EPG has no template of a project for {platform.name}: docs/cmake.md shows the files to write"
     return ""

@@ -8,8 +8,8 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from epg.connect.files import Snapshot
@@ -60,17 +60,33 @@ class SetParameter:
     value: float | None
 
 
-Change = SetEnds | SetValue | RemoveValue | RenameKey | SetParameter
+@dataclass(frozen=True)
+class SetFile:
+    """Writes another file of the project, or removes it if ``after`` is None.
+
+    ``before`` is its contents as they were read, None for a new file.
+    """
+
+    path: Path
+    before: bytes | None
+    after: bytes | None
+
+
+Change = SetEnds | SetValue | RemoveValue | RenameKey | SetParameter | SetFile
 Operation = tuple[Change, ...]
 """All changes of one user action; undo and redo treat them as one."""
 
 
 @dataclass(frozen=True)
 class Texts:
-    """The texts of the two files that can be edited; None for a file without readable text."""
+    """The texts of the two files that can be edited; None for a file without readable text.
+
+    ``files`` are the new contents of other files of the project, None for those that are removed.
+    """
 
     bindings: str | None
     tcf: str | None
+    files: Mapping[Path, bytes | None] = field(default_factory=dict)
 
 
 class Draft:
@@ -82,6 +98,7 @@ class Draft:
     def __init__(self, bindings: Snapshot, tcf: Snapshot, fresh: str) -> None:
         self.bindings, self.tcf, self._fresh = bindings, tcf, fresh
         self._texts = [Texts(fresh if bindings.data is None else bindings.text, tcf.text)]  # one more than operations
+        self._files: dict[Path, tuple[bytes | None, bytes | None]] = {}  # at first, and on the disk now
         self._operations: list[Operation] = []
         self._count = 0  # the number of operations that are done; undo has taken back the later ones
         self._saved = 0  # the number of operations that the files on the disk contain
@@ -112,6 +129,11 @@ class Draft:
         texts = ((self.bindings.path, after.bindings), (self.tcf.path, after.tcf))
         return {path: text for path, text in texts if text is not None}
 
+    @property
+    def files(self) -> dict[Path, bytes | None]:
+        """The contents of the project's other files that an operation has changed, undone operations among them."""
+        return {path: self.texts.files.get(path, first) for path, (first, _) in self._files.items()}
+
     def do(self, operation: Operation, model: Model | None) -> None:
         """Applies ``operation``.  Raises CannotEdit; the texts are then unchanged."""
         after = self._applied(self.texts, operation, model)
@@ -134,6 +156,10 @@ class Draft:
         for before, text in ((self.bindings, self.texts.bindings), (self.tcf, self.texts.tcf)):
             if text is not None and text != before.text:
                 pairs.append((before, before.with_text(text)))
+        for path, (first, now) in self._files.items():
+            wanted = self.texts.files.get(path, first)
+            if wanted != now:
+                pairs.append((Snapshot(path, now), Snapshot(path, wanted)))
         return pairs
 
     @property
@@ -145,6 +171,8 @@ class Draft:
         """Notes that one of the files was saved as ``after``."""
         if after.path == self.bindings.path:
             self.bindings = after
+        elif after.path in self._files:
+            self._files[after.path] = (self._files[after.path][0], after.data)
         else:
             self.tcf = after
         if not self.changed:
@@ -169,7 +197,11 @@ class Draft:
             old, new = before.text or "", after.text or ""
             name = before.path.name
             lines += difflib.unified_diff(
-                _lines(old), _lines(new), name if before.data is not None else "(no file)", name, lineterm=""
+                _lines(old),
+                _lines(new),
+                name if before.data is not None else "(no file)",
+                name if after.data is not None else "(no file)",
+                lineterm="",
             )
         return "".join(f"{line}\n" for line in lines)
 
@@ -177,6 +209,9 @@ class Draft:
         for change in operation:
             if isinstance(change, SetParameter):
                 texts = replace(texts, bindings=self._with_parameter(texts.bindings, change))
+            elif isinstance(change, SetFile):
+                self._files.setdefault(change.path, (change.before, change.before))
+                texts = replace(texts, files={**texts.files, change.path: change.after})
             elif not isinstance(change, SetEnds):
                 file, before = self.tcf.path.name, texts.tcf
                 if before is None:

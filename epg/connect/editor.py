@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import os
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,12 +13,15 @@ from epg.catalog.catalog import Catalog, load_catalog
 from epg.connect.body import Refused
 from epg.connect.component_edits import Users, pins_for, users_of, users_view
 from epg.connect.configurations import Project
-from epg.connect.draft import Draft, Operation
+from epg.connect.draft import Draft, Operation, SetFile, SetValue
 from epg.connect.files import Snapshot, Watch, read_snapshot, save
 from epg.connect.forms import forms_of
+from epg.connect.literal_calls import FILE
 from epg.connect.loaded import Models, load, tcf_path
+from epg.connect.moving import TcfMove, plan_move
 from epg.connect.pinout import problems_view, signals_view
-from epg.connect.projects import Job
+from epg.connect.project_files import FileChange, file_changes
+from epg.connect.projects import Job, find_jobs
 from epg.connect.unused import unused_parts
 from epg.connect.view import view_of
 from epg.diagnostics import Diagnostics
@@ -26,6 +30,30 @@ from epg.edit.bindings import CannotEdit
 from epg.edit.scalars import scalar_text
 from epg.emit.leftovers import remove_leftovers
 from epg.models import load_model
+from epg.project import Request
+
+
+@dataclass(frozen=True)
+class Move:
+    """A move to another target: the changes of the ``.tcf``, and those of the project's other files.
+
+    ``files`` is None if EPG has no project for the new target.
+    """
+
+    tcf: TcfMove
+    files: list[FileChange] | None
+
+    @property
+    def operation(self) -> Operation:
+        changed = [change for change in self.files or () if change.what != "asked"]
+        return (*self.tcf.operation, *(SetFile(each.path, each.before, each.after) for each in changed))
+
+    def data(self) -> dict[str, Any]:
+        return {
+            "items": [item.data() for item in self.tcf.items],
+            "files": [change.data() for change in self.files] if self.files is not None else None,
+        }
+
 
 _CONFLICT_HINT = "reload to discard your changes, or save anyway to overwrite the other program's changes"
 
@@ -155,13 +183,41 @@ class Editor:
         if not self.owns_tcf:
             hint = f"write a .tcf with 'extends: {path.name}', and name your file in CMakeLists.txt"
             return Project(path.stem, f"this project uses {path.name}, which EPG does not change: {hint}", target)
-        extends = chain[0].node.get("extends") if chain else None
+        if not chain:
+            return Project("", f"{path.name} has an error: see the messages", target)
+        own = chain[0].node.get("target")
+        if own is not None:
+            return Project(str(own.value), "", target, own_target=True)
+        extends = chain[0].node.get("extends")
         if extends is None or not isinstance(extends.value, str):
-            return Project("", f"{path.name} has no 'extends': it describes the whole target itself", target)
-        chosen = extends.value.removesuffix(".tcf")
-        if "target" in chain[0].node:
-            return Project(chosen, f"{path.name} sets 'target' itself: change or remove that key", target)
-        return Project(chosen, "", target)
+            return Project("", f"{path.name} has neither 'target' nor 'extends'", target)
+        return Project(extends.value.removesuffix(".tcf"), "", target)
+
+    def plan_move(self, choice: str) -> Move:
+        """The changes that move the target to ``choice``, a target or configuration.  Raises Refused or CannotEdit."""
+        self.check_conflict()
+        project, text = self.project(), self.draft.texts.tcf
+        if text is None or not self.loaded.chain:
+            raise Refused(f"'{self._tcf_path.name}' cannot be read", "see the messages", 409)
+        key, value = ("target", choice) if project.own_target else ("extends", f"{choice}.tcf")
+        before = self._middleware(text)
+        files = self._file_changes(project.chosen, choice, before, before)
+        after = {change.path: change.after for change in files or () if change.what != "asked"}
+        request = replace(self._request(after), drafts=self.draft.drafts())
+        move = plan_move(self.loaded, request, self._tcf_path, SetValue((key,), value), self._models)
+        if self._middleware(move.text) != before:
+            files = self._file_changes(project.chosen, choice, before, self._middleware(move.text))
+        return Move(move, files)
+
+    def _file_changes(self, old: str, new: str, before: str | None, after: str | None) -> list[FileChange] | None:
+        """The changes of the project's files from one target, with its middleware, to another one."""
+        return file_changes(self.job, old, new, (before, after), self.draft.files)
+
+    def _middleware(self, text: str) -> str | None:
+        """The middleware that a text of the ``.tcf`` states."""
+        root = parse_yaml(text, self._tcf_path.name, Diagnostics())
+        node = root.get("communication", "middleware") if root is not None else None
+        return None if node is None else str(node.value)
 
     def unused_parts(self) -> list[list[str]]:
         """The parts of the robot that no port uses, as soon as all ports are connected, or unconnected on purpose."""
@@ -247,10 +303,19 @@ class Editor:
             self.external = f"another program changed {what}: {changes} applied to the new text"
 
     def _load(self) -> None:
-        request = replace(self.job.request, drafts=self.draft.drafts())
+        request = replace(self._request(self.draft.files), drafts=self.draft.drafts())
         self.loaded = load(request, self._models)
         self._forms = None
         self._watch = Watch(self.loaded.files(), self._seen)
+
+    def _request(self, files: Mapping[Path, bytes | None]) -> Request:
+        """The request that CMake will make with ``files``, which are not saved yet: only the plant can differ."""
+        if self.job.source_dir is None or not any(path.name == FILE for path in files):
+            return self.job.request
+        request = self.job.request
+        jobs = find_jobs(self.job.source_dir, Diagnostics(), files)
+        found = next((job.request for job in jobs if job.request.name == request.name), request)
+        return replace(request, plant=found.plant, plant_bindings=found.plant_bindings)
 
     def _new_draft(self) -> Draft:
         self._seen = bindings, tcf = self._snapshots()

@@ -58,6 +58,8 @@ def read_snapshot(path: Path) -> Snapshot:
 def save(before: Snapshot, after: Snapshot, *, project: Path | None = None, anyway: bool = False) -> None:
     """Replaces the file ``before`` by ``after``, if it has not changed since; with ``anyway`` also if it has.
 
+    Removes the file if ``after`` has no data.
+
     The replacement is atomic: another program that reads the file sees the old or the new contents, never a mixture.
     If the file is a symbolic link, the file that it leads to is replaced and keeps its permissions; the link stays.
     The link must not lead out of ``project``, the folder of the project.  If the file is not in ``project``, or if
@@ -69,8 +71,10 @@ def save(before: Snapshot, after: Snapshot, *, project: Path | None = None, anyw
     _check_links(before.path, target, project)
     if not anyway and read_snapshot(target).data != before.data:
         raise Unsavable(f"another program changed '{before.path.name}' after EPG had read it")
-    assert after.data is not None
     try:
+        if after.data is None:
+            target.unlink(missing_ok=True)
+            return
         target.parent.mkdir(parents=True, exist_ok=True)
         if target.exists() and not os.access(target, os.W_OK):
             raise Unsavable(f"'{before.path.name}' is write-protected")

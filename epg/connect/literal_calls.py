@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -66,9 +66,13 @@ def not_literal(word: Word) -> Unknown:
 
 @dataclass
 class LiteralCalls:
-    """The calls of the project in ``top``: in that folder and in all folders that add_subdirectory() names."""
+    """The calls of the project in ``top``: in that folder and in all folders that add_subdirectory() names.
+
+    ``drafts`` are the contents of files that are not saved yet; None for a file that will not exist.
+    """
 
     top: Path
+    drafts: Mapping[Path, bytes | None] = field(default_factory=dict)
     calls: list[Call] = field(default_factory=list)
     unknown: list[Unknown] = field(default_factory=list)
     uses_zephyr: bool = False
@@ -80,9 +84,10 @@ class LiteralCalls:
     def _folder(self, folder: Path, roots: tuple[str, ...]) -> None:
         path = folder / FILE
         try:
-            text = path.read_bytes().decode("utf-8-sig", "replace").replace("\r\n", "\n")
+            data = self.drafts[path] if path in self.drafts else path.read_bytes()
         except (OSError, ValueError):
             return  # CMake reports it when it configures
+        text = (data or b"").decode("utf-8-sig", "replace").replace("\r\n", "\n")
         if folder in self._read or len(self._read) >= MAX_FOLDERS:
             return
         self._read.add(folder)

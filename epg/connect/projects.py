@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 
 from epg.connect.build_folders import build_folders
 from epg.connect.literal_calls import FILE, Call, LiteralCalls, Unknown, Word, not_literal
@@ -47,9 +48,12 @@ class Job:
     simulated: bool = False
 
 
-def find_jobs(folder: Path, diagnostics: Diagnostics) -> list[Job]:
+def find_jobs(
+    folder: Path, diagnostics: Diagnostics, drafts: Mapping[Path, bytes | None] = MappingProxyType({})
+) -> list[Job]:
     """The targets of the project in ``folder``, or of the part ``folder`` of a larger project.
 
+    ``drafts`` are contents of CMakeLists.txt files that are not saved yet.
     The list is empty, without a message, if there is no epg_add_target().  A call that only CMake can evaluate is an
     error if there is no other target, else a warning.
     """
@@ -57,7 +61,7 @@ def find_jobs(folder: Path, diagnostics: Diagnostics) -> list[Job]:
     if not (folder / FILE).is_file():
         return []
     top = _top(folder)
-    read = LiteralCalls(top)
+    read = LiteralCalls(top, drafts)
     builds = build_folders(top)
     records = {build.path: recorded_calls(build) for build in reversed(builds)}
     requests, unknown = _requests(read, folder)

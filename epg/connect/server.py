@@ -241,6 +241,8 @@ class _Handler(BaseHTTPRequestHandler):
             self._json({"lines": lines})
         elif path == "api/product":
             self._send(200, "application/octet-stream", owner.session.runs.download(query.get("path", "")))
+        elif path == "api/move":
+            self._json(owner.session.move(query.get("configuration", "")))
         elif path == "api/source":
             self._json(owner.session.source(query.get("file", ""), _integer(query, "line", 1)))
         elif path == "api/pins":

@@ -341,6 +341,8 @@ class Session:
         if not boolean(body, "agreed"):
             self._check_others(editor)
         editor.save(anyway=boolean(body, "anyway"))
+        if self._targets.look():  # EPG itself has written a CMakeLists.txt: the project can be built in another way now
+            editor.job = self._targets.find(editor.job.request.name) or editor.job
         self._open_anew()
 
     def _others(self, editor: Editor) -> list[Job]:
@@ -370,15 +372,28 @@ class Session:
         self._open_anew()
 
     def _choose(self, body: Body) -> None:
-        name = text(body, "configuration")
+        """Moves the target to another one, with all changes of :meth:`move` in one step."""
+        name = self._choice(text(body, "configuration"))
+        if name != self._opened().project().chosen:
+            self._opened().edit(self._opened().plan_move(name).operation)
+
+    def _choice(self, name: str) -> str:
+        """The name of a configuration or target that can be chosen.  Raises Refused."""
         choice = self._configurations.find(name)
         if choice is None:
             raise Refused(f"there is no configuration '{name}'", status=404)
         reason = self._opened().project().reason(choice)
         if reason:
             raise Refused(f"'{name}' cannot be chosen here", reason, 409)
-        if name != self._opened().project().chosen:
-            self._opened().edit((SetValue(("extends",), f"{name}.tcf"),))
+        return name
+
+    def move(self, name: str) -> dict[str, Any]:
+        """The list of changes that the action "choose" would make for a configuration or a target.  Raises Refused."""
+        with self._changed:
+            try:
+                return self._opened().plan_move(self._choice(name)).data()
+            except CannotEdit as problem:
+                raise Refused(str(problem)) from None
 
     def _open(self, body: Body) -> None:
         name = text(body, "target")
@@ -418,6 +433,7 @@ class Session:
 
     def _generate(self, body: Body) -> None:
         self._check_ready()
+        self._save_project()
         anyway = boolean(body, "anyway")
         if self._ask(text(body, "run", ""), anyway=anyway) is None:
             self._save({})
@@ -432,6 +448,7 @@ class Session:
         wires = self._missing_wires()
         if not wires:
             self._check_ready()
+        self._save_project()
         simulation = find_simulation(self._opened().job, text(body, "simulation", ""))
         anyway, accepted = boolean(body, "anyway"), boolean(body, "accept")
         left = {} if accepted else wires
@@ -477,6 +494,11 @@ class Session:
         if count:
             what = "is an error" if count == 1 else f"are {count} errors"
             raise Refused(f"there {what}: the project cannot be built", "correct the errors in the messages", 409)
+
+    def _save_project(self) -> None:
+        """Saves a move to another target: its CMakeLists.txt is built by other commands, which the user must see."""
+        if self._opened().draft.files:
+            self._save({})
 
     def _ask(self, agreed: str, *, anyway: bool) -> dict[str, Any] | None:
         editor = self._opened()

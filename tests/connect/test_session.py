@@ -386,8 +386,8 @@ def test_another_configuration_is_chosen(page: Page, project: Path) -> None:
     assert [name for name, each in by_name.items() if each["chosen"]] == ["rpi_pico_bare_metal_jiwy"]
     assert by_name["rpi_pico_bare_metal_jiwy"]["matches"] == 10 and by_name["rpi_pico_bare_metal_jiwy"]["ports"] == 10
     assert by_name["rpi_pico_bare_metal_relbot"]["possible"]
-    assert "epg new" in by_name["rpi_pico_freertos_jiwy"]["reason"]
-    assert "no components" in by_name["rpi_pico_bare_metal"]["reason"]
+    assert by_name["rpi_pico_freertos_jiwy"]["possible"] and by_name["host_jiwy"]["possible"]
+    assert "components of a robot" in by_name["rpi_pico_bare_metal"]["reason"]
     original = (project / "robot.tcf").read_text()
     state = page.post("choose", configuration="rpi_pico_bare_metal_relbot")
     assert (project / "robot.tcf").read_text() == original
@@ -402,8 +402,8 @@ def test_another_configuration_is_chosen(page: Page, project: Path) -> None:
     page.post("save")
     assert (project / "robot.tcf").read_text() == original
     with pytest.raises(Denied) as refusal:
-        page.post("choose", configuration="rpi_pico_freertos_jiwy")
-    assert refusal.value.status == 409 and "epg new" in refusal.value.hint
+        page.post("choose", configuration="rpi_pico_bare_metal")
+    assert refusal.value.status == 409 and "components of a robot" in refusal.value.hint
 
 
 def test_configurations_of_the_user_are_listed(project: Path, tmp_path: Path) -> None:

@@ -7,6 +7,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import sys
@@ -72,11 +73,13 @@ def make_plan(job: Job, configuration: Configuration | None, *, run: bool = True
     build = Path(os.path.abspath(job.build_dir or source / USUAL))
     file = build / CACHE
     cache = read_cmake_cache(file, Diagnostics()) if file.is_file() else {}
+    if job.simulated:
+        configuration = None
+    outdated = configuration is not None and _is_of_another_target(job, configuration, source, build, cache)
+    cache = {} if outdated else cache
     west = job.built_by == "west"
     names = (*ALWAYS, *(["west", "zephyr"] if west and not cache else []))
     findings = find_tools(names, job.request.roots, cache, run=run)
-    if job.simulated:
-        configuration = None
     lack = lack_of(job, configuration, findings, build, cache, run=run)
     if lack.certain or (lack.likely and not anyway):
         return Plan(source, build, (), {}, cache, (*lack.certain, *lack.likely), can_try=not lack.certain)
@@ -90,10 +93,33 @@ def make_plan(job: Job, configuration: Configuration | None, *, run: bool = True
     else:
         configure = Command("configure", _first(job, source, build, programs), source)
     build_command = (programs["cmake"], "--build", str(build), *_parallel(cache, programs))
-    steps = (configure, Command("build", build_command, source))
+    fresh = (
+        programs["cmake"],
+        "-E",
+        "rm",
+        "-rf",
+        str(build / CACHE),
+        str(build / "CMakeFiles"),
+    )  # as cmake --fresh does
+    first = (Command("configure", fresh, source),) if outdated else ()
+    steps = (*first, configure, Command("build", build_command, source))
     environment = _environment(os.environ, cache, west=west)
     build_program = cache.get("CMAKE_MAKE_PROGRAM") or programs["build_program"]
     return Plan(source, build, steps, environment, cache, downloads=lack.downloads, build_program=build_program)
+
+
+def _is_of_another_target(
+    job: Job, configuration: Configuration, source: Path, build: Path, cache: Mapping[str, str]
+) -> bool:
+    """True if the build folder was configured for another board or platform: its compiler and board cannot be used."""
+    if not cache or os.path.realpath(cache.get("CMAKE_HOME_DIRECTORY", "")) != os.path.realpath(source):
+        return False
+    name = job.request.name
+    try:
+        text = (build / "epg" / name / f"{name}.json").read_text(encoding="utf-8")
+        return bool(json.loads(text)["target"]["name"] != configuration.target.name)
+    except (OSError, ValueError, KeyError, TypeError):
+        return False  # nothing was generated yet
 
 
 def _first(job: Job, source: Path, build: Path, programs: Mapping[str, str]) -> tuple[str, ...]:

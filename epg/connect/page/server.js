@@ -108,6 +108,16 @@ export async function getText(address) {
   return (await get(address)).text();
 }
 
+// Fetches JSON, or the reason why it was refused: {message, hint}.
+export async function getAnswer(address) {
+  try {
+    const data = await (await request(address)).json();
+    return data.error ?? data;
+  } catch {
+    return { message: "EPG does not answer", hint: "" };
+  }
+}
+
 // Fetches a picture, and returns a local address of it for <img> and links: these cannot send the secret.
 export async function getPicture(address) {
   const answer = await get(address);

@@ -459,6 +459,19 @@ interface Actions {
   done: Nothing;
 }
 
+/** The changes that a move to another target would make. */
+interface Move {
+  items: {
+    what: "changed" | "dropped" | "asked" | "kept";
+    key: string;
+    before: string;
+    after: string;
+    reason: string;
+  }[];
+  /** Other files of the project; null if EPG has no project for the platform. */
+  files: { name: string; what: "written" | "removed" | "asked"; new: boolean; lines: string }[] | null;
+}
+
 /** The server's answer to a refused action. */
 interface Refusal {
   message: string;

@@ -66,12 +66,14 @@ def test_from_model_to_project(started: Served, model: Path, open_page: Open) ->
     picture.locator("desc").wait_for(state="attached")
     assert "encoder_pan a to contact 14 (GP10); encoder_pan b to contact 15 (GP11)" in picture.text_content()
 
-    # Another target for the same board and RTOS is a normal change.
+    # Another target: the page lists the changes before it makes them.
     page.get_by_role("button", name="Target").click()
     dialog = page.get_by_role("dialog")
     dialog.get_by_label("Robot", exact=True).select_option("relbot")
     dialog.get_by_role("radio", name="rpi_pico_bare_metal_relbot").check()
-    dialog.get_by_role("button", name="Use this target").click()
+    dialog.get_by_role("button", name="Show changes").click()
+    assert "rpi_pico_bare_metal_relbot.tcf" in dialog.get_by_role("region", name="Changed").inner_text()
+    dialog.get_by_role("button", name="Change target").click()
     page.get_by_text("● Unsaved changes").wait_for()
     page.locator(".component-name").get_by_text("encoder_left", exact=True).first.wait_for()
     page.get_by_role("tab", name="Changes").click()
