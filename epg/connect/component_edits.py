@@ -104,9 +104,7 @@ def users_view(users: Mapping[str, Users]) -> Data:
 
 def fill(forms: Data, loaded: Loaded, path: tuple[str, ...], text: str) -> list[Change]:
     """Gives the value at ``path`` the ``text`` of its field.  An empty text means that no file sets the value."""
-    found = field_at(forms, path)
-    if found is None:
-        raise Refused(f"there is no value '{'.'.join(path)}'", "reload the page", 409)
+    found = _field(forms, path)
     if path[0] == PARAMETERS:
         value = value_of(found, text, Refused) if text else None
         if not (value is None or isinstance(value, (int, float))):
@@ -119,8 +117,16 @@ def fill(forms: Data, loaded: Loaded, path: tuple[str, ...], text: str) -> list[
     return [SetValue(path, None)] if _inherited(loaded, path) else take_back(forms, loaded, path)
 
 
+def _field(forms: Data, path: tuple[str, ...]) -> Data:
+    found = field_at(forms, path)
+    if found is None:
+        raise Refused(f"there is no value '{'.'.join(path)}'", "reload the page", 409)
+    return found
+
+
 def take_back(forms: Data, loaded: Loaded, path: tuple[str, ...]) -> list[Change]:
     """Removes the value at ``path`` from the project's own file.  Its group stays, although it can be empty then."""
+    _field(forms, path)
     if path[0] == PARAMETERS:
         return fill(forms, loaded, path, "")
     group, own = path[:-1], loaded.chain[0].node.get(*path[:-1])

@@ -198,6 +198,9 @@ def test_a_value_without_a_field_is_refused(axis: Session) -> None:
         fill(axis, "target", "host")
     with pytest.raises(Refused, match=r"there is no value 'components\.position_x\.kind'"):
         fill(axis, "components.position_x.kind", "pwm")
+    for path in (["target"], ["components"], ["parameters"], ["components", "nobody", "kind"]):
+        with pytest.raises(Refused, match="there is no value"):
+            axis.act("take_back", {"path": path})
 
 
 @pytest.fixture

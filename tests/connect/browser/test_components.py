@@ -24,8 +24,8 @@ Open = Callable[..., Any]
 class Keyboard:
     """A user without a pointer."""
 
-    def __init__(self, page: Any, epg: Served) -> None:
-        self.page, self.epg = page, epg
+    def __init__(self, page: Any) -> None:
+        self.page = page
 
     def to(self, condition: str) -> None:
         tab_to(self.page, condition)
@@ -94,7 +94,7 @@ def build_axis(user: Keyboard, axis: str) -> None:
 
 
 def build_robot(served: Served, page: Any, folder: Path, axes: tuple[str, ...]) -> None:
-    user = Keyboard(page, served)
+    user = Keyboard(page)
     page.locator(".diagram").wait_for()
     for axis in axes:
         build_axis(user, axis)
