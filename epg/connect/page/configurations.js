@@ -18,6 +18,7 @@ export function configurationCards(state, only = () => true) {
   const configurations = state.configurations.filter(only);
   const robots = [...new Set(configurations.map((each) => each.robot || NO_ROBOT))];
   const shown = configurations.filter(isShown);
+  const isMove = state.phase === "connect";
   return h(
     "div.chooser",
     filters(robots),
@@ -33,7 +34,11 @@ export function configurationCards(state, only = () => true) {
       : shown.length === 0
         ? h("p.empty", "No target matches. Clear the search to see all.")
         : null,
-    h("div.robots", { role: "radiogroup", "aria-label": "Targets" }, grouped(shown).map(robotGroup)),
+    h(
+      "div.robots",
+      { role: "radiogroup", "aria-label": "Targets" },
+      grouped(shown).map((group) => robotGroup(group, isMove)),
+    ),
   );
 }
 
@@ -101,10 +106,10 @@ function filters(robots) {
 
 const filter = (part) => change({ filter: { ...ui.filter, ...part } });
 
-function robotGroup({ robot, boards }) {
+function robotGroup({ robot, boards }, isMove) {
   const name = id("robot", robot);
-  const summary =
-    robot === NO_ROBOT ? "without a robot: every port becomes a topic; you add the components to the .tcf" : "";
+  const own = isMove ? "with the components of this project" : "every port becomes a topic; you add components next";
+  const summary = robot === NO_ROBOT ? own : "";
   return h(
     "section.robot",
     { key: robot, "aria-labelledby": name },
@@ -114,14 +119,20 @@ function robotGroup({ robot, boards }) {
         "div.board",
         { key: board, role: "group", "aria-label": `${robot}, ${board}` },
         h("h4", board),
-        h("div.cards", list.map(card)),
+        h(
+          "div.cards",
+          list.map((each) => card(each, isMove)),
+        ),
       ),
     ),
   );
 }
 
-/** @param {Configuration} configuration */
-function card(configuration) {
+/**
+ * @param {Configuration} configuration
+ * @param {boolean} isMove
+ */
+function card(configuration, isMove) {
   const { name, platform, picture, components, matches, ports, missing, possible, reason, chosen } = configuration;
   const [title, ...more] = platform.split(/[:,] /);
   const field = id("target", name);
@@ -143,7 +154,7 @@ function card(configuration) {
       h("span.card-title", title[0].toUpperCase() + title.slice(1), chosen ? h("span.tag", "in use") : null),
       more.length && h("span.card-line", more.join(", ")),
       h("span.card-line.name", breakable(name)),
-      h("span.card-line", offer(components, matches, ports)),
+      (components > 0 || !isMove) && h("span.card-line", offer(components, matches, ports)),
       missing.length && h("span.card-line.warning", icon("warning"), `Missing on this computer: ${missing.join(", ")}`),
       reason && h("span.card-line.warning", icon("warning"), reason),
     ),

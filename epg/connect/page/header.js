@@ -38,7 +38,7 @@ export function header(state) {
     h(
       "p",
       { class: `saved${draft.changed ? " unsaved" : ""}`, key: "saved", role: "status" },
-      draft.changed ? "● Unsaved changes" : "Saved",
+      draft.changed ? "● Unsaved" : "Saved",
     ),
     h(
       "div.group",

@@ -42,7 +42,7 @@ def test_diagram_and_details(jiwy: Project, open_page: Open) -> None:
     page = open_page(jiwy.address)
     found = {"diagram": violations(page)}
     field(page, "tilt_logging").select_option("unconnected on purpose")
-    page.get_by_text("● Unsaved changes").wait_for()
+    page.get_by_text("● Unsaved").wait_for()
     for tab in page.get_by_role("tab").all():
         tab.click()
         found[tab.inner_text()] = violations(page)
@@ -76,6 +76,6 @@ def test_fits_the_window(jiwy: Project, open_page: Open, width: int, height: int
     assert page.evaluate("document.getElementById('main').scrollWidth") <= width
     assert violations(page) == []
     field(page, "tilt_logging").select_option("unconnected on purpose")
-    page.get_by_text("● Unsaved changes").wait_for()
+    page.get_by_text("● Unsaved").wait_for()
     page.get_by_role("button", name="Generate", exact=True).scroll_into_view_if_needed()
     assert page.get_by_role("button", name="Generate", exact=True).is_visible()

@@ -70,7 +70,7 @@ def test_a_page_of_an_epg_that_has_ended(browser: Any, tmp_path: Path) -> None:
         page.goto(epg.address)
         until(page, "document.querySelectorAll('[role=alert]').length === 0")
         field(page, "position_tilt").select_option("encoder_pan")
-        page.get_by_text("● Unsaved changes").wait_for()
+        page.get_by_text("● Unsaved").wait_for()
     page.context.close()
 
 

@@ -72,7 +72,7 @@ def test_connects_by_drag(jiwy: Project, open_page: Open, backwards: bool) -> No
         assert page.locator("path.wire.held").count() == 1
 
     drag(page, *ends, halfway=marks)
-    page.get_by_text("● Unsaved changes").wait_for()
+    page.get_by_text("● Unsaved").wait_for()
     assert field(page, "position_tilt").input_value() == ":encoder_tilt"
     assert jiwy.text() == before, "nothing is written before Save"
     save(page)
@@ -117,7 +117,7 @@ def test_the_end_of_a_wire_is_moved(
     page = open_page(jiwy.address, viewport={"width": 1280, "height": 1200})
     count = page.locator(".wire-group").count()
     drag(page, handle(page, side, name), handle(page, side, other))
-    page.get_by_text("● Unsaved changes").wait_for()
+    page.get_by_text("● Unsaved").wait_for()
     assert page.locator(".wire-group").count() == (count if name in ("pan_logging", "pan_subscriber") else count - 1)
     save(page)
     text = jiwy.text()
@@ -129,7 +129,7 @@ def test_the_end_of_a_wire_is_moved(
 def test_a_new_wire_replaces_the_other_driver(jiwy: Project, open_page: Open) -> None:
     page = open_page(jiwy.address, viewport={"width": 1280, "height": 1200})
     drag(page, handle(page, "outputs", "tilt_logging"), handle(page, "sinks", "pwm_tilt"))
-    page.get_by_text("● Unsaved changes").wait_for()
+    page.get_by_text("● Unsaved").wait_for()
     wires = jiwy.epg.state()["wires"]
     assert [end["reference"] for end in wires["tilt_logging"]] == ["tilt_publisher", "pwm_tilt"]
     assert "pwm_tilt" not in wires
@@ -143,7 +143,7 @@ def test_connects_by_list(jiwy: Project, open_page: Open) -> None:
     assert options[0] == "(not connected)"
     assert options[1:] == jiwy.epg.state()["candidates"]["position_tilt"], "all fit"
     field(page, "position_tilt").select_option("encoder_pan")
-    page.get_by_text("● Unsaved changes").wait_for()
+    page.get_by_text("● Unsaved").wait_for()
     field(page, "setpoint_pan").select_option("")
     field(page, "pan_logging").select_option("unconnected on purpose")
     page.get_by_role("button", name="Connect pwm_pan to another component").click()
@@ -185,7 +185,7 @@ def test_connects_by_keyboard(jiwy: Project, open_page: Open) -> None:
     page.keyboard.press("Escape")
     assert page.evaluate("document.activeElement.dataset.side") == "outputs", "put back"
     page.keyboard.press("Delete")
-    page.get_by_text("● Unsaved changes").wait_for()
+    page.get_by_text("● Unsaved").wait_for()
     assert "pwm_tilt" not in jiwy.epg.state()["wires"]
 
 
@@ -239,7 +239,7 @@ def test_conflicts_have_the_words_of_the_command_line(
     else:
         page = open_page(jiwy.address, viewport={"width": 1280, "height": 1200})
         field(page, name).select_option(other)
-        page.get_by_text("● Unsaved changes").wait_for()
+        page.get_by_text("● Unsaved").wait_for()
         twice = port(page, other).get_by_text("already driven")
         twice.wait_for()  # at both ports: the user need not know which one comes first in the file
         save(page)
@@ -391,17 +391,17 @@ def test_pictures_stay_while_there_are_errors(jiwy: Project, open_page: Open) ->
 def test_undo_and_redo(jiwy: Project, open_page: Open) -> None:
     page = open_page(jiwy.address)
     field(page, "position_tilt").select_option("encoder_pan")
-    page.get_by_text("● Unsaved changes").wait_for()
+    page.get_by_text("● Unsaved").wait_for()
     page.keyboard.press("Control+z")
     page.get_by_text("Saved", exact=True).wait_for()
     assert field(page, "position_tilt").input_value() == ":encoder_tilt"
     page.keyboard.press("Control+y")
-    page.get_by_text("● Unsaved changes").wait_for()
+    page.get_by_text("● Unsaved").wait_for()
     assert field(page, "position_tilt").input_value() == ":encoder_pan"
     page.get_by_role("button", name="Undo").click()
     page.get_by_text("Saved", exact=True).wait_for()
     page.get_by_role("button", name="Redo").click()
-    page.get_by_text("● Unsaved changes").wait_for()
+    page.get_by_text("● Unsaved").wait_for()
     page.get_by_role("tab", name="Changes").click()
     assert "+  position_tilt: encoder_pan" in page.get_by_role("tabpanel").inner_text()
 
@@ -417,7 +417,7 @@ def test_edits_outside_are_noticed(jiwy: Project, open_page: Open) -> None:
 
     # There is an unsaved change: it is kept and applied to the new text.
     field(page, "pan_logging").select_option("unconnected on purpose")
-    page.get_by_text("● Unsaved changes").wait_for()
+    page.get_by_text("● Unsaved").wait_for()
     jiwy.file.write_text(jiwy.text().replace("tilt: encoder_pan", "tilt: encoder_tilt"), encoding="utf-8")
     until(page, "document.getElementById('ends-position_tilt-0').value === ':encoder_tilt'")
     assert field(page, "pan_logging").input_value() == "unconnected"
@@ -429,7 +429,7 @@ def test_edits_outside_are_noticed(jiwy: Project, open_page: Open) -> None:
 def test_conflict_with_an_edit_outside(jiwy: Project, open_page: Open, choice: str) -> None:
     page = open_page(jiwy.address)
     field(page, "position_tilt").select_option("encoder_pan")
-    page.get_by_text("● Unsaved changes").wait_for()
+    page.get_by_text("● Unsaved").wait_for()
     broken = jiwy.text().replace("inputs:\n", "inputs: [\n")
     jiwy.file.write_text(broken, encoding="utf-8")
     button = page.get_by_role("button", name=choice)
@@ -477,7 +477,7 @@ def test_several_targets_of_one_project(browser: Any, open_page: Open, tmp_path:
         assert chooser.locator("option").all_inner_texts() == ["jiwy", "second"]
         assert field(page, "pan_logging").input_value() == ":pan_publisher"
         field(page, "position_tilt").select_option("encoder_pan")
-        page.get_by_text("● Unsaved changes").wait_for()
+        page.get_by_text("● Unsaved").wait_for()
         chooser.select_option("second")
         page.get_by_role("alert").get_by_text("unsaved changes").wait_for()
         assert chooser.input_value() == "jiwy"

@@ -19,7 +19,7 @@ def test_says_that_the_connection_is_lost(browser: Any, open_page: Open, tmp_pat
     with Served(tmp_path / "jiwy") as epg:
         page = open_page(epg.address)
         field(page, "position_tilt").select_option("encoder_pan")
-        page.get_by_text("● Unsaved changes").wait_for()
+        page.get_by_text("● Unsaved").wait_for()
     page.get_by_role("alert").get_by_text("The connection to EPG is lost.").wait_for()
     assert "epg connect" in page.get_by_role("alert").inner_text()
     assert field(page, "position_tilt").is_visible(), "what was on the page stays to be read"
@@ -37,7 +37,7 @@ def test_asks_before_changes_are_lost(browser: Any, open_page: Open, tmp_path: P
     with Served(tmp_path / "jiwy") as epg:
         page = open_page(epg.address)
         field(page, "position_tilt").select_option("encoder_pan")
-        page.get_by_text("● Unsaved changes").wait_for()
+        page.get_by_text("● Unsaved").wait_for()
         page.get_by_role("button", name="Close EPG").click()
         dialog = page.get_by_role("dialog", name="Close EPG")
         dialog.get_by_role("button", name="Cancel").click()

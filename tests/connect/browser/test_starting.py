@@ -74,7 +74,7 @@ def test_from_model_to_project(started: Served, model: Path, open_page: Open) ->
     dialog.get_by_role("button", name="Show changes").click()
     assert "rpi_pico_bare_metal_relbot.tcf" in dialog.get_by_role("region", name="Changed").inner_text()
     dialog.get_by_role("button", name="Change target").click()
-    page.get_by_text("● Unsaved changes").wait_for()
+    page.get_by_text("● Unsaved").wait_for()
     page.locator(".component-name").get_by_text("encoder_left", exact=True).first.wait_for()
     page.get_by_role("tab", name="Changes").click()
     assert "+extends: rpi_pico_bare_metal_relbot.tcf" in page.get_by_role("tabpanel").inner_text()
