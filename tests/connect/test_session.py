@@ -481,9 +481,10 @@ def test_a_project_of_topics_is_created_for_a_target(tmp_path: Path) -> None:
         state = page.post("create", name="robot", **body)
         assert state["phase"] == "connect" and state["diagnostics"] == [] and len(state["wires"]) == 10
         state = page.until(lambda state: state["configurations"])
-        assert not any(each["chosen"] for each in state["configurations"])
-        reasons = {each["reason"] for each in state["configurations"]}
-        assert reasons == {"robot.tcf has no 'extends': it describes the whole target itself"}
+        assert [each["name"] for each in state["configurations"] if each["chosen"]] == ["rpi_pico_bare_metal"]
+        for each in state["configurations"]:
+            expected = "this project has components of its own" if each["robot"] else ""
+            assert each["reason"].split(":")[0] == expected
 
 
 def test_creating_replaces_nothing(tmp_path: Path) -> None:
