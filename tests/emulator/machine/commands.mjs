@@ -30,13 +30,19 @@ export class Commands {
 
     // Images and time --------------------------------------------------------------------------------------------------
 
-    /** {image, rom?, boot_rom?, clock?, flash_size?, boot_cycles?, usb?}; `rom` is an ELF file, `boot_rom` a binary. */
-    load({ image, rom, boot_rom: bootRom, clock, flash_size: flashSize, boot_cycles: bootCycles, usb = {} }) {
+    /**
+     * {image, rom?, boot_rom?, clock?, flash_size?, boot_cycles?, wait_states?, usb?}; `rom` is an ELF file, `boot_rom` a
+     * binary.
+     */
+    load({
+        image, rom, boot_rom: bootRom, clock, flash_size: flashSize, boot_cycles: bootCycles,
+        wait_states: waitStates, usb = {},
+    }) {
         const [bytes, romSymbols] = bootRom ? [pad(readFileSync(bootRom)), new Map()] : romFromElf(need(rom, 'rom'));
         const { clock_error: clockError, packet_delay: delay, ...others } = usb;
         const packetDelay = delay === undefined ? undefined : (random) => delay[0] + random.next() * (delay[1] - delay[0]);
         const machine = new Machine({
-            rom: bytes, romSymbols, clock, flashSize, bootCycles, usb: { clockError, packetDelay, ...others },
+            rom: bytes, romSymbols, clock, flashSize, bootCycles, waitStates, usb: { clockError, packetDelay, ...others },
         });
         this.machine = machine;
         machine.usbHost.onData = (data, port) => this.receive(data, port);
@@ -399,6 +405,19 @@ export class Commands {
             machine.probe(core, machine.address(to), close);
         }
         return null;
+    }
+
+    /** From now on, each access of {core} to flash is a fault; with {forbidden} false, no longer. */
+    forbid_flash({ core, forbidden = true }) {
+        this.machine.forbidFlash(need(core, 'core'), forbidden);
+        return null;
+    }
+
+    /** Accesses to flash and hits of its cache, cycles of a transfer, and cycles that each core waited for the other. */
+    memory() {
+        const { flashCache, memoryBus } = this.machine;
+        const { accesses, hits, transfer } = flashCache;
+        return { accesses, hits, transfer, waits: memoryBus === null ? [0, 0] : memoryBus.waits };
     }
 
     /** An access of a core to flash counts in every span that is open on that core, also in nested ones. */

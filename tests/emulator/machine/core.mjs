@@ -57,6 +57,9 @@ export class Core extends CortexM0Core {
         this.rom16 = new Uint16Array(chip.bootrom.buffer);
         this.rom8 = new Uint8Array(chip.bootrom.buffer);
         this.onFlash = null; // (core, address) of each access to flash, fetches included
+        this.bus = null; // MemoryBus, if memory takes time
+        this.accesses = 0; // of the running instruction
+        this.fetched = -1; // the word of the last fetch: an instruction of 16 bits needs none if it is in this word
         this.watches = []; // watched writes to RAM: {low, high, call(core, address, size, value)}
         this.forbidden = []; // ranges [low, high) that the MPU protects
         this.writeLow = 0; // bounds that include all ranges of both lists
@@ -105,6 +108,7 @@ export class Core extends CortexM0Core {
         }
         const pc = this.PC & ~1;
         this.opcodePC = pc;
+        this.accesses = 0;
         try {
             if (pc >>> 28 > 2) {
                 throw new Fault('execution of memory that is not executable', pc);
@@ -140,9 +144,7 @@ export class Core extends CortexM0Core {
     /** Shifts by a register, ADCS and SBCS: the package computes carry and overflow wrongly for some operands. */
     operate(opcode) {
         const { registers } = this;
-        if (this.onFlash !== null && this.opcodePC >>> 28 === 1) {
-            this.onFlash(this, this.opcodePC);
-        }
+        this.readUint16(this.opcodePC); // as the package does for the other instructions
         const value = registers[opcode & 7];
         const by = registers[(opcode >> 3) & 7] & 0xff;
         let result = value;
@@ -296,7 +298,8 @@ export class Core extends CortexM0Core {
             }
             this.hardFault(fault, this.PC & ~1);
         }
-        this.time += EXCEPTION_ENTRY;
+        this.time += EXCEPTION_ENTRY + this.extra;
+        this.extra = 0;
         this.machine.exceptionTaken(this, number);
     }
 
@@ -359,6 +362,21 @@ export class Core extends CortexM0Core {
         }
     }
 
+    /** Waits for an access of the running instruction to SRAM or flash.  The first one is the fetch. */
+    waitForMemory(address) {
+        const fetch = address - this.opcodePC;
+        if (fetch === 0 || fetch === 2) {
+            const word = address >>> 2;
+            if (word === this.fetched) {
+                return;
+            }
+            this.fetched = word;
+        }
+        const cycle = this.time + this.extra + this.accesses++;
+        const ram = address - 0x20000000;
+        this.extra += ram >= 0 ? this.bus.sram(this.number, ram, cycle) : this.bus.cache.access(address, cycle);
+    }
+
     readUint32(address) {
         const a = address >>> 0;
         if (a & 3) {
@@ -366,6 +384,9 @@ export class Core extends CortexM0Core {
         }
         const ram = a - 0x20000000;
         if (ram >= 0 && ram < SRAM_SIZE) {
+            if (this.bus !== null) {
+                this.waitForMemory(a);
+            }
             return this.sram32[ram >>> 2];
         }
         if (a >>> 26 === 4) {
@@ -381,6 +402,9 @@ export class Core extends CortexM0Core {
         const a = address >>> 0;
         const ram = a - 0x20000000;
         if (ram >= 0 && ram < SRAM_SIZE && !(a & 1)) {
+            if (this.bus !== null) {
+                this.waitForMemory(a);
+            }
             return this.sram16[ram >>> 1];
         }
         if (a & 1) {
@@ -399,6 +423,9 @@ export class Core extends CortexM0Core {
         const a = address >>> 0;
         const ram = a - 0x20000000;
         if (ram >= 0 && ram < SRAM_SIZE) {
+            if (this.bus !== null) {
+                this.waitForMemory(a);
+            }
             return this.sram8[ram];
         }
         if (a >>> 26 === 4) {
@@ -420,6 +447,9 @@ export class Core extends CortexM0Core {
             if (a < this.writeHigh && a + 4 > this.writeLow) {
                 this.checkWrite(a, 4, value >>> 0);
             }
+            if (this.bus !== null) {
+                this.waitForMemory(a);
+            }
             this.sram32[ram >>> 2] = value;
             return;
         }
@@ -436,6 +466,9 @@ export class Core extends CortexM0Core {
             if (a < this.writeHigh && a + 2 > this.writeLow) {
                 this.checkWrite(a, 2, value & 0xffff);
             }
+            if (this.bus !== null) {
+                this.waitForMemory(a);
+            }
             this.sram16[ram >>> 1] = value;
             return;
         }
@@ -448,6 +481,9 @@ export class Core extends CortexM0Core {
         if (ram >= 0 && ram < SRAM_SIZE) {
             if (a < this.writeHigh && a >= this.writeLow) {
                 this.checkWrite(a, 1, value & 0xff);
+            }
+            if (this.bus !== null) {
+                this.waitForMemory(a);
             }
             this.sram8[ram] = value;
             return;
@@ -492,6 +528,9 @@ export class Core extends CortexM0Core {
         if (this.onFlash !== null) {
             this.onFlash(this, address);
         }
+        if (this.bus !== null) {
+            this.waitForMemory(address);
+        }
         const offset = address & FLASH_MASK;
         return offset < this.flashSize ? offset : offset % this.flashSize;
     }
@@ -503,6 +542,7 @@ export class Core extends CortexM0Core {
         if (a >>> 12 === 0xe000e) {
             return this.privateBus.readUint32(a & 0xfff);
         }
+        this.waitForDevice(a, false);
         return this.machine.readPeripheral(a);
     }
 
@@ -512,7 +552,14 @@ export class Core extends CortexM0Core {
         } else if (a >>> 12 === 0xe000e) {
             this.privateBus.writeUint32(a & 0xfff, value >>> 0);
         } else {
+            this.waitForDevice(a, true);
             this.machine.writePeripheral(this, a, value, size);
+        }
+    }
+
+    waitForDevice(address, write) {
+        if (this.bus !== null && address >>> 28 === 4) {
+            this.extra += this.bus.apb(this.number, write, this.time + this.extra + this.accesses++);
         }
     }
 }

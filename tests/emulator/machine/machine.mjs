@@ -10,6 +10,7 @@
 import { CycleClock } from './clock.mjs';
 import { Core, Fault, replicate } from './core.mjs';
 import { Launch } from './launch.mjs';
+import { FlashCache, MemoryBus } from './memory_bus.mjs';
 import { BasePeripheral, IRQ, RP2040 } from './package.mjs';
 import { Pads } from './pads.mjs';
 import { PioBlock } from './pio.mjs';
@@ -30,7 +31,6 @@ const BOOT2_SIZE = 256;
 const ROM_END = 0x4000;
 // appears four times, every 4 kB: its aliases do not set or clear bits (raspberrypi/pico-feedback 75)
 const DPRAM = 0x50100000;
-const XIP_CONTROL = 0x14000;
 const XIP_SRAM = 0x15000000;
 const XIP_SRAM_SIZE = 16 * 1024;
 
@@ -44,12 +44,17 @@ export class Machine {
     /**
      * `rom`: image of the boot ROM.  `clock`: of clk_sys in Hz, from the first cycle on.  `flashSize` in bytes.
      * `usb`: options of UsbHost.  `bootCycles`: from reset to the first instruction of the image's second stage.
+     * `waitStates`: memory takes time: the flash has its cache, and the cores wait for each other.
      */
-    constructor({ rom, romSymbols = new Map(), clock = 125e6, flashSize = 2 << 20, usb = {}, bootCycles = 0 }) {
+    constructor({
+        rom, romSymbols = new Map(), clock = 125e6, flashSize = 2 << 20, usb = {}, bootCycles = 0, waitStates = false,
+    }) {
         this.clock = new CycleClock(clock);
         this.rom = rom;
         this.flashSize = flashSize;
         this.bootCycles = bootCycles;
+        this.waitStates = waitStates;
+        this.withoutFlash = [false, false]; // cores that must not access flash
         this.external = new Int8Array(30).fill(-1);
         this.watchdogMemory = new WatchdogMemory();
         this.symbols = new Map();
@@ -113,7 +118,14 @@ export class Machine {
         this.usb = chip.usbCtrl = new UsbDevice(this, chip);
         this.usb.host = this.usbHost ?? null;
         this.xipSram = new Uint32Array(XIP_SRAM_SIZE / 4);
+        this.flashCache = new FlashCache(chip, chip.peripherals[0x18000]);
+        this.memoryBus = this.waitStates ? new MemoryBus(this.flashCache) : null;
+        this.cores.forEach((core) => {
+            core.bus = this.memoryBus;
+            this.hookFlash(core, null);
+        });
         Object.assign(chip.peripherals, {
+            0x14000: this.flashCache,
             0x40000: new Registers(chip, 'SYSINFO', { 0: CHIP_ID_B2, 4: 2, 0x40: 0x7f000000 }),
             0x4000c: new Resets(this, chip),
             0x40010: new PowerOn(this, chip),
@@ -169,11 +181,24 @@ export class Machine {
     /** `recorder(core, address)` is called for each access of the core to flash. */
     hookFlash(core, recorder) {
         core.recorder = recorder;
-        core.onFlash = !this.flashOff ? recorder : (user, address) => {
-            if (user.opcodePC >= ROM_END) {
-                throw new Fault('flash is not readable now', address);
-            }
-        };
+        if (this.withoutFlash[core.number]) {
+            core.onFlash = (user, address) => {
+                throw new Fault('access to flash by a core that must not have any', address);
+            };
+        } else {
+            core.onFlash = !this.flashOff ? recorder : (user, address) => {
+                if (user.opcodePC >= ROM_END) {
+                    throw new Fault('flash is not readable now', address);
+                }
+            };
+        }
+    }
+
+    /** From now on, each access of a core to flash is a fault, also after a reset; or no longer. */
+    forbidFlash(number, forbidden) {
+        this.withoutFlash[number] = forbidden;
+        const core = this.cores[number];
+        this.hookFlash(core, core.recorder ?? null);
     }
 
     load(image) {
@@ -330,9 +355,6 @@ export class Machine {
         if (address - XIP_SRAM >= 0 && address - XIP_SRAM < XIP_SRAM_SIZE) {
             return this.xipSram[(address - XIP_SRAM) >> 2];
         }
-        if (address >>> 12 === XIP_CONTROL) {
-            return address & 0xff ? 0 : 3; // CTRL: the cache is on, and invalid memory accesses fault
-        }
         throw new Fault('read of an address where nothing is', address);
     }
 
@@ -347,7 +369,7 @@ export class Machine {
             this.programFlash(address & 0xffffff, value, size);
         } else if (address - XIP_SRAM >= 0 && address - XIP_SRAM < XIP_SRAM_SIZE && size === 4) {
             this.xipSram[(address - XIP_SRAM) >> 2] = value;
-        } else if (address >>> 12 !== XIP_CONTROL && address >= ROM_END) { // a write to ROM has no effect
+        } else if (address >= ROM_END) { // a write to ROM has no effect
             throw new Fault('write to an address where nothing is', address);
         }
     }

@@ -21,6 +21,8 @@ void case_fault_of_core_1(void);
 void case_flash(void);
 void case_from_flash(void);
 void case_from_ram(void);
+void case_read_times(void);
+void case_contention(void);
 void case_pio_wave(void);
 void case_pio_shift(void);
 void case_pio_flags(void);

@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #define TIMERAWL (*(volatile uint32_t *)0x40054028u)
+#define XIP_FLUSH (*(volatile uint32_t *)0x14000004u)
 #define SSI_ENABLE (*(volatile uint32_t *)0x18000008u)
 #define XIP_BASE 0x10000000u
 #define SECTOR 4096u
@@ -143,6 +144,7 @@ void rom_flash_range_program(uint32_t offset, const uint8_t *data, uint32_t coun
 
 void rom_flash_flush_cache(void)
 {
+    XIP_FLUSH = 1;
 }
 
 void rom_flash_enter_cmd_xip(void)
