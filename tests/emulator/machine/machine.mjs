@@ -183,6 +183,7 @@ export class Machine {
         core.recorder = recorder;
         if (this.withoutFlash[core.number]) {
             core.onFlash = (user, address) => {
+                recorder?.(user, address);
                 throw new Fault('access to flash by a core that must not have any', address);
             };
         } else {

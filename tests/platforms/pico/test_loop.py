@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The control loop in the emulator: RP2040 images with the compiler's arithmetic.  Times are cycles of 8 ns.
 
-The emulator does not simulate contention for the bus or the flash cache; docs/emulator.md lists what it simulates.
+The flash has its cache, and the cores wait for each other; docs/emulator.md lists what the emulator simulates.
 """
 
 from __future__ import annotations
@@ -24,13 +24,15 @@ WRAP_EXCEPTION = 16 + 4
 
 @pytest.fixture(scope="module", params=PLATFORMS)
 def pico(request: pytest.FixtureRequest) -> Iterator[Emulator]:
-    """A user's executable after 0.1 s, with all events recorded."""
+    """A user's executable after 0.1 s, with all events recorded.  From its start on, core 1 must not access flash."""
     skip_unless_emulated(request.param)
     elf = images("pico", request.param, "user_jiwy") / "user_jiwy.elf"
-    with Emulator(elf) as emulator:
+    with Emulator(elf, wait_states=True) as emulator:
         emulator.call("watch_exceptions", numbers=[WRAP_EXCEPTION])
         emulator.call("watch_pwm", slices=[TICK_SLICE, PAN_SLICE, TILT_SLICE], wraps=True)
         emulator.call("watch_span", name="cycle", core=1, **{"from": "on_wrap", "to": "return"})
+        emulator.run_until("sleep_between_ticks", core=1)
+        emulator.call("forbid_flash", core=1)
         emulator.run(milliseconds=100)
         yield emulator
 

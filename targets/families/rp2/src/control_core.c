@@ -171,12 +171,21 @@ static void __not_in_flash_func(on_wrap)(void)
 
 /* Core 1 --------------------------------------------------------------------------------------------------------- */
 
-/** All work of core 1 is done in the wrap interrupt. */
-static void __attribute__((noreturn)) __not_in_flash_func(sleep_between_ticks)(void)
+/** All work of core 1 is done in the wrap interrupt.  If this were inlined, core 1 would read flash after each cycle. */
+static void __attribute__((noreturn)) __no_inline_not_in_flash_func(sleep_between_ticks)(void)
 {
     for (;;) {
         __wfi();
     }
+}
+
+/** Starts the slices of the tick and of the outputs.  The time is read just before: a read of flash between would take
+ * microseconds, by which all ticks would seem late. */
+static void __attribute__((noreturn)) __no_inline_not_in_flash_func(start_ticks)(void)
+{
+    loop.ticks.due_ns = epg_pico_timer_us() * 1000U;
+    hw_set_bits(&pwm_hw->en, epg_pico_output_slices | loop.tick_bit);
+    sleep_between_ticks();
 }
 
 static void start_watchdog(void)
@@ -221,9 +230,7 @@ static void core1_main(void)
     start_watchdog();
 
     atomic_store(&state, STATE_RUNNING);
-    loop.ticks.due_ns = epg_pico_timer_us() * 1000U;
-    hw_set_bits(&pwm_hw->en, epg_pico_output_slices | loop.tick_bit);
-    sleep_between_ticks();
+    start_ticks();
 }
 
 /* Core 0 --------------------------------------------------------------------------------------------------------- */
