@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 
 from epg.edit.bindings import End
@@ -64,28 +63,6 @@ def keys(value: object) -> tuple[str, ...]:
     if not isinstance(value, list) or not 0 < len(value) <= _DEEPEST:
         raise Refused("a path must be a list of keys")
     return tuple(text({"path": key}, "path") for key in value)
-
-
-def value(body: Body, key: str) -> object:
-    """The JSON value of ``key``: texts in it are on one line, and lists and maps are at most 16 deep."""
-    if key not in body:
-        raise Refused(f"'{key}' is missing")
-    _check_value(body[key], key, _DEEPEST)
-    return body[key]
-
-
-def _check_value(given: object, key: str, depth: int) -> None:
-    if isinstance(given, (list, Mapping)):
-        if depth == 0:
-            raise Refused(f"'{key}' has too many levels")
-        for child in given.values() if isinstance(given, Mapping) else given:
-            _check_value(child, key, depth - 1)
-        for name in given if isinstance(given, Mapping) else ():
-            text({key: name}, key)
-    elif isinstance(given, str):
-        text({key: given}, key, "")
-    elif isinstance(given, float) and not math.isfinite(given):
-        raise Refused(f"'{key}' must be a finite number")
 
 
 def ends(body: Body) -> tuple[End, ...]:

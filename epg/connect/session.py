@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import epg
-from epg.connect.body import Body, Refused, bodies, boolean, ends, keys, names, text, value
+from epg.connect.body import Body, Refused, bodies, boolean, ends, keys, names, text
 from epg.connect.build.plan import make_plan
 from epg.connect.component_edits import add, copy, fill, remove, rename, take_back
 from epg.connect.configurations import Configurations
@@ -88,7 +88,6 @@ class Session:
             "disconnect": self._disconnect,
             "accept": self._accept,
             "leave_out": self._leave_out,
-            "set": self._set,
             "unset": self._unset,
             "choose_pin": self._choose_pin,
             "first_pins": self._first_pins,
@@ -263,13 +262,6 @@ class Session:
         if not parts:
             raise Refused("no part of the robot is unused", "connect all ports first", 409)
         self._opened().edit(tuple(SetValue(("components", *part), None) for part in parts))
-
-    def _set(self, body: Body) -> None:
-        """Gives keys of the ``.tcf`` their values, in one step."""
-        editor = self._of_the_user()
-        editor.edit(
-            tuple(SetValue(keys(change.get("path")), value(change, "value")) for change in bodies(body, "changes"))
-        )
 
     def _unset(self, body: Body) -> None:
         """Removes keys from the ``.tcf``, in one step: the values of the extended file, or the defaults, hold again."""

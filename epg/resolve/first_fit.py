@@ -136,7 +136,7 @@ class _Search:
         self.dividers = Dividers(self.target, Diagnostics())
         self.order = {pin: number for number, pin in enumerate(_preferred(self.target))}
         self.known = complete_claims(claims, self.target)
-        self.taken = {self.target.board.pin_name(str(s.value)) for c in claims for s in c.signals.values()}
+        self.taken = {pin for claim in claims for pin in self._stated(claim).values()}
         self.others = self._demands([*self.known, *self.ticks])
         self.open = [found for claim in claims if self._missing(claim) and (found := self._opened(claim)) is not None]
         self.solvable = len(self.open) == sum(bool(self._missing(claim)) for claim in claims)
@@ -178,7 +178,7 @@ class _Search:
 
         Of adjacent pins, the first signal gets the one with the lower number, if possible.
         """
-        stated = {signal: self.target.board.pin_name(str(s.value)) for signal, s in each.claim.signals.items()}
+        stated = self._stated(each.claim)
         free = [[pin for pin in each.choices[signal] if pin not in used] for signal in each.missing]
         found = []
         for chosen in itertools.product(*free):
@@ -277,8 +277,11 @@ class _Search:
         chosen: Mapping[str, str],
     ) -> frozenset[Place]:
         """The ``allowed`` places that a claim can have with its pins and the ``chosen`` ones."""
-        stated = {signal: self.target.board.pin_name(str(s.value)) for signal, s in claim.signals.items()}
-        return allowed & self.pins.reachable(resource_class, peripheral, {**stated, **chosen})
+        return allowed & self.pins.reachable(resource_class, peripheral, {**self._stated(claim), **chosen})
+
+    def _stated(self, claim: Claim) -> dict[str, str]:
+        """The pins that a claim has already, by signal."""
+        return {signal: self.target.board.pin_name(str(stated.value)) for signal, stated in claim.signals.items()}
 
     def _allowed(self, claim: Claim, resource_class: ResourceClass, peripheral: Peripheral) -> frozenset[Place]:
         """The places on instances that no other code uses, and whose clock can make the wanted value."""

@@ -113,7 +113,7 @@ def test_values_of_the_configuration_are_set(tmp_path: Path) -> None:
     original = (folder / "robot.tcf").read_text()
     period, pin = ["control", "period"], ["components", "pwm_pan", "pins", "value"]
     with serving(session_of(folder)) as page:
-        state = page.post("set", changes=[{"path": period, "value": "2 ms"}, {"path": pin, "value": "GP0"}])
+        state = page.post("fill", changes=[{"path": period, "text": "2 ms"}, {"path": pin, "text": "GP0"}])
         assert "+  pwm_pan: {pins: {value: GP0}}\n" in state["draft"]["diff"]
         assert "+  period: 2 ms\n" in state["draft"]["diff"]
         assert any("GP0" in row["pins"] for row in state["hardware"] if row["component"] == "pwm_pan")
@@ -123,19 +123,19 @@ def test_values_of_the_configuration_are_set(tmp_path: Path) -> None:
         page.post("undo")
         page.post("save")
         assert (folder / "robot.tcf").read_text() == original
-        for changes in ([{"path": period}], [{"path": [], "value": 1}], [{"path": [1], "value": 1}], "period"):
+        for changes in ([{"text": "1"}], [{"path": [], "text": "1"}], [{"path": [1], "text": "1"}], "period"):
             with pytest.raises(Denied) as refusal:
-                page.post("set", changes=changes)
+                page.post("fill", changes=changes)
             assert refusal.value.status == 400
         with pytest.raises(Denied, match="on one line"):
-            page.post("set", changes=[{"path": period, "value": "1 ms\nnode: x"}])
+            page.post("fill", changes=[{"path": period, "text": "1 ms\nnode: x"}])
 
 
 def test_files_of_epg_are_not_changed(tmp_path: Path) -> None:
     folder = tmp_path / "jiwy"
     shutil.copytree(ROOT / "examples/jiwy", folder)
     with serving(session_of(folder)) as page, pytest.raises(Denied, match="this file cannot be changed"):
-        page.post("set", changes=[{"path": ["control", "period"], "value": "2 ms"}])
+        page.post("fill", changes=[{"path": ["control", "period"], "text": "2 ms"}])
 
 
 def test_outputs_can_have_several_ends_or_none(page: Page, bindings: Path) -> None:

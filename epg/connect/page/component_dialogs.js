@@ -3,7 +3,7 @@
 
 import { closeDialog, openDialog } from "./dialog.js";
 import { h, id, textField } from "./dom.js";
-import { control, hint, label, oneOfNotes, words } from "./form.js";
+import { control, groupSwitch, hint, label, oneOfNotes, words } from "./form.js";
 import { act, current } from "./server.js";
 import { draw, openTab, say, ui } from "./ui.js";
 
@@ -134,22 +134,12 @@ function askedGroup(field, typed) {
       "legend",
       pins || field.required
         ? words(field.name)
-        : h(
-            "label.check",
-            h("input", {
-              type: "checkbox",
-              id: name,
-              checked: isOn,
-              "aria-describedby": `${name}-hint`,
-              onchange: ({ target }) => {
-                for (const key of Object.keys(typed)) if (key.startsWith(`${field.name}.`)) delete typed[key];
-                if (target.checked) typed[field.name] = "{}";
-                else delete typed[field.name];
-                draw();
-              },
-            }),
-            words(field.name),
-          ),
+        : groupSwitch(name, field, isOn, (on) => {
+            for (const key of Object.keys(typed)) if (key.startsWith(`${field.name}.`)) delete typed[key];
+            if (on) typed[field.name] = "{}";
+            else delete typed[field.name];
+            draw();
+          }),
     ),
     pins
       ? h("span.hint", { id: `${name}-hint` }, "Empty: the first free pins that fit. You can move them afterwards.")

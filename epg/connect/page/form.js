@@ -105,26 +105,26 @@ function group(state, base, field) {
   return h(
     "fieldset.field-group",
     { key: name, disabled: Boolean(state.forms.locked) },
-    h(
-      "legend",
-      always
-        ? words(field.name)
-        : h(
-            "label.check",
-            h("input", {
-              type: "checkbox",
-              id: name,
-              checked: isOn,
-              "aria-describedby": `${name}-hint`,
-              onchange: (event) => fill(path, event.target.checked ? "{}" : ""),
-            }),
-            words(field.name),
-          ),
-    ),
+    h("legend", always ? words(field.name) : groupSwitch(name, field, isOn, (on) => fill(path, on ? "{}" : ""))),
     hint(name, field),
     inline(messagesAt(state, path)),
     isOn && h("div.form-fields", formFields(state, base, field.fields)),
     !isOn && place(state, path, field, value),
+  );
+}
+
+/** The box that switches a group of values on and off, with the group's name. */
+export function groupSwitch(name, field, isOn, onswitch) {
+  return h(
+    "label.check",
+    h("input", {
+      type: "checkbox",
+      id: name,
+      checked: isOn,
+      "aria-describedby": `${name}-hint`,
+      onchange: (event) => onswitch(event.target.checked),
+    }),
+    words(field.name),
   );
 }
 

@@ -425,7 +425,6 @@ interface Actions {
   /** Without ports, all proposals are accepted. */
   accept: { ports?: string[] };
   leave_out: Nothing;
-  set: { changes: { path: string[]; value: unknown }[] };
   unset: { paths: string[][] };
   choose_pin: { component: string; signal: string; pin: string };
   /** Without signals, all signals without a pin. */
