@@ -64,8 +64,8 @@ def make_plan(job: Job, configuration: Configuration | None, *, run: bool = True
 
     The products are therefore the same, including files that are made after linking, such as ``.uf2``.
 
-    ``configuration`` is None if it has an error; CMake then reports it.  It does not count for the simulation of a
-    system, which needs no tools of the target.  Without ``run``, no program that the build
+    ``configuration`` is None if it has an error; CMake then reports it.  The simulation of a
+    system does not use it: this build needs no tools of the target.  Without ``run``, no program that the build
     folder names is started, not even to ask for its version.  With ``anyway``, there are steps even if tools are
     missing that the project's own CMake files may find.
     """
