@@ -17,7 +17,7 @@ static const case_t all_cases[] = {
     case_two_cores, case_divide_on_both,  case_events, case_interrupt_of_core_1, case_masked_sleep, case_nested,
     case_fault,     case_fault_of_core_1, case_flash,  case_from_flash,          case_from_ram,     case_pio_wave,
     case_pio_shift, case_pio_flags,       case_pwm,    case_pwm_registers,       case_pwm_tick,     case_alarm,
-    case_systick,   case_watchdog,        case_pins,   case_pio_latency, case_read_times, case_contention,
+    case_systick,   case_watchdog,        case_pins,   case_pio_latency,         case_read_times,   case_contention,
 };
 
 /* A pin as the arguments set it: pin, direction, level, pulls. */
