@@ -64,7 +64,7 @@ def copied(output: Path) -> str:
     platform = [path for path in sorted((host / "src").glob("*.c")) if path.name != "main.c"]
     exported = [output / "jiwy_model_export.c", *sorted((JIWY / "model").glob("*.c"))]
     kinds = [str(path) for path in sorted((ROOT / "targets" / "components").iterdir()) if path.is_dir()]
-    return f"""add_library(epg_runtime STATIC EXCLUDE_FROM_ALL {listed(sorted((runtime / "src").glob("*.c")))})
+    return f"""add_library(epg_runtime STATIC EXCLUDE_FROM_ALL {listed(sorted((runtime / "src").glob("*/*.c")))})
 target_include_directories(epg_runtime PUBLIC "{runtime / "include"}")
 add_library(epg_host STATIC EXCLUDE_FROM_ALL {listed(platform)})
 target_include_directories(epg_host PUBLIC "{host / "include"}")

@@ -110,7 +110,7 @@ def build_generated(folder: Path, configuration: str) -> Program:
     glue = [compile_c(output / name, folder / "g", includes, WARNINGS) for name in GLUE]
     glue.append(compile_c(output / "jiwy_model_export.c", folder / "g", includes, ["-w", *names]))
     others = [compile_c(SOURCES / name, folder / "g", includes, WARNINGS) for name in ("generated.c", "driver.c")]
-    shared = sorted([*(RUNTIME / "src").glob("*.c"), *(source for kind in kinds for source in kind.glob("*.c"))])
+    shared = sorted([*(RUNTIME / "src").glob("*/*.c"), *(source for kind in kinds for source in kind.glob("*.c"))])
     library = [compile_c(source, folder / "r", includes, WARNINGS) for source in shared]
     glue += linked_from(library, [*glue, *others])
     return Program(link([*glue, *model, *others], folder / "g/driver"), "epg_control_cycle", tuple(glue), tuple(model))

@@ -208,15 +208,24 @@ endfunction()
 
 # _epg_runtime_library(<folder>)
 #
-# Makes the library epg_runtime from EPG's portable runtime, once per build.
+# Makes the libraries epg_runtime, with the control cycle, and epg_communication from EPG's portable runtime, once per
+# build.  A microcontroller can keep the first one in faster memory.
 #   <folder>  folder of the runtime
 function(_epg_runtime_library folder)
   if(TARGET epg_runtime)
     return()
   endif()
-  file(GLOB sources "${folder}/src/*.c")
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${folder}/src")
-  add_library(epg_runtime STATIC EXCLUDE_FROM_ALL ${sources})
-  target_include_directories(epg_runtime PUBLIC "${folder}/include")
-  _epg_exact_arithmetic(epg_runtime)
+  foreach(part control communication)
+    set(library epg_runtime)
+    if(part STREQUAL "communication")
+      set(library epg_communication)
+    endif()
+    file(GLOB sources "${folder}/src/${part}/*.c")
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${folder}/src/${part}")
+    add_library(${library} STATIC EXCLUDE_FROM_ALL ${sources})
+    target_include_directories(${library} PUBLIC "${folder}/include")
+    _epg_exact_arithmetic(${library})
+  endforeach()
+  target_link_libraries(epg_runtime PUBLIC epg_communication)
+  target_link_libraries(epg_communication PUBLIC epg_runtime)
 endfunction()

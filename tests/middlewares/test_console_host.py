@@ -18,7 +18,7 @@ import pytest
 from .client import Host, Lines, stat, values
 
 MODEL = 140
-"""Offset of the model's name in a store: targets/runtime/src/store.c."""
+"""Offset of the model's name in a store: targets/runtime/src/communication/store.c."""
 
 
 def test_setpoints_reach_the_model(jiwy_host: Path) -> None:

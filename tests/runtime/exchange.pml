@@ -1,5 +1,5 @@
 /*
- * The exchange of targets/runtime/src/exchange.c for the model checker spin: one writer, one reader, every
+ * The exchange of targets/runtime/src/control/exchange.c for the model checker spin: one writer, one reader, every
  * interleaving of their loads and stores.
  *
  * A value is two words that are copied one after the other, so that a torn value can be seen.  Each statement of a

@@ -69,7 +69,7 @@ def _run_compiler(command: Sequence[str]) -> None:
 
 def runtime_sources() -> list[Path]:
     """All C files of the runtime."""
-    return sorted((RUNTIME / "src").glob("*.c"))
+    return sorted((RUNTIME / "src").glob("*/*.c"))
 
 
 def component_sources() -> list[Path]:

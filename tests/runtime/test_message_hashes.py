@@ -15,7 +15,7 @@ from .program import RUNTIME
 def messages() -> list[tuple[str, str]]:
     """The type and hash of each message, and of each request and reply, in the runtime's sources."""
     found = []
-    for source in sorted((RUNTIME / "src").glob("*.c")):
+    for source in sorted((RUNTIME / "src").glob("*/*.c")):
         text = source.read_text().replace("\\\n", "\n")  # also in macros
         found += re.findall(r'\.type = "([^"]*)",\s*\.hash =\s*"([^"]*)"', text)
     return found
@@ -28,7 +28,7 @@ def test_the_computation_gives_a_hash_that_is_known() -> None:
 
 def test_all_messages_are_found() -> None:
     declared = sum(
-        len(re.findall(r"^const epg_message_t ", s.read_text(), re.M)) for s in (RUNTIME / "src").glob("*.c")
+        len(re.findall(r"^const epg_message_t ", s.read_text(), re.M)) for s in (RUNTIME / "src").glob("*/*.c")
     )
     services = {"SetBool", "Trigger", "ListParameters", "GetParameters", "GetParameterTypes", "DescribeParameters"}
     services |= {"SetParameters", "SetParametersAtomically"}

@@ -136,6 +136,7 @@ endfunction()
 # in_ram.ld stops the link with an error if the user's linker script puts the control cycle into flash.
 function(_epg_rp2_in_ram name)
   _epg_mcu_name_archives(_libm ${name} epg_runtime ${EPG_MODELS})
+  _epg_mcu_name_archives("" epg_communication) # stays in flash
 endfunction()
 
 # Adds the SDK's libraries, definitions and linker options to <library>, the port layer of all targets.

@@ -49,7 +49,7 @@ function(_epg_simulated_target name)
   set(host "${here}/../host/src")
   _epg_simulator_library()
   target_include_directories(${name} PUBLIC "${here}/include" "${here}/../host/include")
-  foreach(library epg_runtime ${name} ${EPG_MODELS})
+  foreach(library epg_runtime epg_communication ${name} ${EPG_MODELS})
     _epg_simulated_library(${library})
   endforeach()
   _epg_simulated_module(${name}_unit ${name}
