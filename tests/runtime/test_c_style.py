@@ -14,7 +14,7 @@ from .program import COMPONENTS, ROOT, RUNTIME, SOURCES, WARNINGS, compile_progr
 
 DRIVERS = sorted(COMPONENTS.glob("*/*.[ch]"))
 HEADERS = sorted((RUNTIME / "include").rglob("*.h"))
-FILES = [*HEADERS, *sorted((RUNTIME / "src").iterdir()), *DRIVERS, *sorted(SOURCES.iterdir())]
+FILES = [*HEADERS, *sorted((RUNTIME / "src").glob("*/*")), *DRIVERS, *sorted(SOURCES.iterdir())]
 
 
 def compile_only(compiler: str, source: Path, output: Path, *options: str) -> None:
@@ -81,7 +81,7 @@ def test_drivers_work_with_fast_math(tmp_path: Path) -> None:
         [
             SOURCES / "driver_tests.c",
             SOURCES / "fake_port.c",
-            *(RUNTIME / "src" / name for name in ("bridge.c", "outputs.c")),
+            *(RUNTIME / "src" / "control" / name for name in ("bridge.c", "outputs.c")),
             *component_sources(),
         ],
         options=["-O2", "-ffast-math"],

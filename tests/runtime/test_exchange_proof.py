@@ -17,7 +17,7 @@ from .program import RUNTIME, SOURCES, THREAD_SANITIZER, compile_program, run_pr
 from .spin import check_search, needs_spin, spin
 
 MODEL = Path(__file__).resolve().parent / "exchange.pml"
-EXCHANGE = RUNTIME / "src" / "exchange.c"
+EXCHANGE = RUNTIME / "src" / "control" / "exchange.c"
 SECONDS = "2"
 # A broken exchange is refused at its first wrong value; the time until then depends on the load of the machine.
 PATIENCE = "60"

@@ -16,7 +16,12 @@ def compile_motor(output: Path, *defines: str) -> Path:
     compiler = shutil.which("gcc") or shutil.which("cc")
     assert compiler is not None, "a C compiler is needed"
     host, runtime = ROOT / "targets" / "platforms" / "host", ROOT / "targets" / "runtime"
-    folders = (runtime / "src/control", runtime / "src/communication", host / "src", host / "src" / ("linux" if sys.platform == "linux" else "elsewhere"))
+    folders = (
+        runtime / "src/control",
+        runtime / "src/communication",
+        host / "src",
+        host / "src" / ("linux" if sys.platform == "linux" else "elsewhere"),
+    )
     sources = [source for folder in folders for source in sorted(folder.glob("*.c"))]
     sources.append(ROOT / "tests" / "platforms" / "host" / "programs" / "motor.c")
     command = [compiler, "-std=c11", "-O1", "-DEPG_HOST_TARGET=epg_host_application"]
