@@ -44,3 +44,38 @@ functions:
     .type data, %object
 data:
     .hword 0, 0
+
+/*
+ * rom_memcpy(to, from, count): copies 16 bytes in 13 clocks, as the chip's function does, if both addresses are
+ * multiples of 4.
+ */
+    .text
+    .global rom_memcpy
+    .type rom_memcpy, %function
+    .thumb_func
+rom_memcpy:
+    push {r0, r4, r5, r6, lr}
+    movs r3, r0
+    orrs r3, r1
+    lsls r3, r3, #30
+    bne 4f
+    b 2f
+1:  ldmia r1!, {r3, r4, r5, r6}
+    stmia r0!, {r3, r4, r5, r6}
+2:  subs r2, r2, #16
+    bhs 1b
+    adds r2, r2, #12
+    blo 6f
+5:  ldmia r1!, {r3}
+    stmia r0!, {r3}
+    subs r2, r2, #4
+    bhs 5b
+6:  adds r2, r2, #4
+    b 4f
+3:  ldrb r3, [r1]
+    strb r3, [r0]
+    adds r1, r1, #1
+    adds r0, r0, #1
+4:  subs r2, r2, #1
+    bhs 3b
+    pop {r0, r4, r5, r6, pc}

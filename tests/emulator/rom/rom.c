@@ -23,7 +23,6 @@ typedef struct entry {
 
 void *rom_table_lookup(const entry_t *table, uint32_t code);
 uint8_t *rom_memset(uint8_t *to, uint8_t value, uint32_t count);
-uint8_t *rom_memcpy(uint8_t *to, const uint8_t *from, uint32_t count);
 uint32_t rom_popcount32(uint32_t value);
 uint32_t rom_reverse32(uint32_t value);
 uint32_t rom_clz32(uint32_t value);
@@ -51,14 +50,6 @@ uint8_t *rom_memset(uint8_t *to, uint8_t value, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
         to[i] = value;
-    }
-    return to;
-}
-
-uint8_t *rom_memcpy(uint8_t *to, const uint8_t *from, uint32_t count)
-{
-    for (uint32_t i = 0; i < count; i++) {
-        to[i] = from[i];
     }
     return to;
 }
