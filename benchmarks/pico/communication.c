@@ -15,28 +15,31 @@ volatile uint32_t communication_period_us = 33000; /* a debugger or a test may c
 static char line[128];
 static size_t length;
 static bool watching;
-static double setpoints[AXES];
 
 static void take_setpoints(char *text)
 {
     static const char *const names[AXES] = {"pan_subscriber=", "tilt_subscriber="};
     for (char *word = strtok(text, " "); word != NULL; word = strtok(NULL, " ")) {
-        for (size_t n = 0; n < AXES; n++) {
+        for (uint32_t n = 0; n < AXES; n++) {
             if (strncmp(word, names[n], strlen(names[n])) == 0) {
-                setpoints[n] = strtod(word + strlen(names[n]), NULL);
+                control_setpoint(n, strtod(word + strlen(names[n]), NULL));
             }
         }
     }
-    control_setpoints(setpoints);
     printf("ok setpoint\n");
 }
 
 static void show_statistics(void)
 {
-    statistics_t statistics;
-    control_statistics(&statistics);
-    printf("stat enabled=%d\nstat cycles=%lu\nstat overruns=%lu\nstat missed=%lu\nok stats\n", statistics.enabled,
-           (unsigned long)statistics.cycles, (unsigned long)statistics.overruns, (unsigned long)statistics.missed);
+    report_t report = {0};
+    (void)control_report(&report);
+    const statistics_t *statistics = &report.status.statistics;
+    printf("stat enabled=%d\nstat fault=%u axis %u\nstat cycles=%lu\nstat overruns=%lu\nstat missed=%lu\n",
+           report.status.enabled, report.status.fault, report.status.axis, (unsigned long)statistics->cycles,
+           (unsigned long)statistics->overruns, (unsigned long)statistics->missed);
+    printf("stat lateness_max=%lu us\nstat computation_max=%lu us\nstat clamped=%lu\nok stats\n",
+           (unsigned long)(statistics->lateness_max / CLOCKS_PER_US),
+           (unsigned long)(statistics->computation_max / CLOCKS_PER_US), (unsigned long)statistics->clamped);
 }
 
 static void obey(char *text)
@@ -80,13 +83,14 @@ static void read_input(void)
 void communicate(void)
 {
     static uint32_t due_us;
+    control_alive();
     read_input();
     const uint32_t now_us = time_us_32();
     if (watching && (int32_t)(now_us - due_us) >= 0) {
-        double positions[AXES];
+        report_t report = {0};
         due_us = now_us - due_us > communication_period_us ? now_us : due_us;
         due_us += communication_period_us;
-        control_positions(positions);
-        printf("watch %.6f pan_publisher=%.9g\n", now_us * 1e-6, positions[PAN]);
+        (void)control_report(&report);
+        printf("watch %.6f pan_publisher=%.9g\n", now_us * 1e-6, report.outputs[LOGGING_PAN]);
     }
 }

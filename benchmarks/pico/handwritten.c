@@ -3,26 +3,41 @@
  * @file
  * JIWY's control cycle as an engineer would write it for this one robot with the Pico SDK, without a generator.
  *
- * It has the same functions as the generated target: encoders with a reset, H-bridges with a direction, tests for
- * values that are not finite, a disabled state, a count of overruns, and values that are passed between the cores.  The
- * cores share values in the SDK's way, under a spin lock.  Parameters, capture, moving by hand, motion guards and the
- * measurement of stacks are left out.
+ * It has the same functions as the generated target: encoders with a reset, H-bridges with a direction, motion guards,
+ * tests for values that are not finite, faults that are latched, a disabled state with safe outputs, statistics of the
+ * cycle and of its lateness, a watchdog that also watches communication, and wait-free exchanges between the cores.
+ * Left out are functions that no cycle of this robot uses: changes of parameters, capture, moving by hand, the
+ * measurement of stacks, and setpoints with a timeout or a rate limit.
+ *
+ * Everything is made for this robot and this chip: numbers are constants, the model's arrays are used directly, and
+ * times are in clocks of the processor, so that 32 bits are enough for them.
  */
 #include "handwritten.h"
 
+#include <stdatomic.h>
 #include <string.h>
 
 #include "epg/pico_quadrature.h"
 #include "hardware/pwm.h"
-#include "pico/critical_section.h"
+#include "hardware/structs/systick.h"
+#include "hardware/watchdog.h"
 #include "pico/stdlib.h"
 #include "xxsubmod.h"
 
 #define PWM_TOP (SYS_CLK_HZ / 20000u - 1u) /* 20 kHz */
+#define PERIOD_CLOCKS (PERIOD_US * CLOCKS_PER_US)
+#define SYSTICK_MASK 0xFFFFFFu
 #define OVERRUN_LIMIT 10u
+#define WATCHDOG_MS 100u
+#define SILENCE_LIMIT 500u /* cycles without a turn of communication, after which the watchdog is not fed */
 
-enum { POSITION, SETPOINT = 2, INPUTS = 4 };
-enum { RESET, LOGGING_PAN = 2, DUTY = 3, LOGGING_TILT = 5, OUTPUTS = 6 };
+/* Limits of the motion guards: angles in rad, times in cycles. */
+#define STALL_DUTY 0.3
+#define STALL_ANGLE 0.017453292519943295 /* 1 degree */
+#define STALL_CYCLES 500
+#define RUNAWAY_DUTY 0.04
+#define RUNAWAY_ANGLE 0.3490658503988659 /* 20 degrees */
+#define HOMING_CYCLES 10000u
 
 typedef struct axis {
     uint8_t encoder_a;
@@ -30,25 +45,91 @@ typedef struct axis {
     uint8_t direction_a;
     uint8_t direction_b;
     double rad_per_count;
+    double homing_travel; /* rad */
 } axis_t;
 
 static const axis_t axes[AXES] = {
-    {.encoder_a = 10, .slice = 1, .direction_a = 7, .direction_b = 8, .rad_per_count = 0.002825173249631109},
-    {.encoder_a = 12, .slice = 2, .direction_a = 5, .direction_b = 6, .rad_per_count = 0.007107675686854735},
+    {.encoder_a = 10,
+     .slice = 1,
+     .direction_a = 7,
+     .direction_b = 8,
+     .rad_per_count = 0.002825173249631109, /* 180 degrees in 1112 counts */
+     .homing_travel = 3.490658503988659},   /* 200 degrees */
+    {.encoder_a = 12,
+     .slice = 2,
+     .direction_a = 5,
+     .direction_b = 6,
+     .rad_per_count = 0.007107675686854735, /* 90 degrees in 221 counts */
+     .homing_travel = 1.9198621771937625},  /* 110 degrees */
 };
 
+typedef struct guard {
+    bool armed;
+    bool homing;
+    bool moved;       /* a reset has moved the angle */
+    int8_t direction; /* of the drive; 0: none */
+    int32_t stalled;  /* cycles driven without motion; negative: backwards */
+    double stall_origin;
+    double homing_origin;
+    uint32_t driven;       /* cycles of homing in which the motor was driven */
+    double best;           /* the angle farthest in `direction` */
+    uint32_t cycles;       /* since that angle */
+    uint32_t half_cycles;  /* from that angle to half of RUNAWAY_ANGLE; 0: not yet */
+    double half_travelled; /* distance from that angle at that time */
+} guard_t;
+
+/* Control side. */
 static epg_pico_quadrature_t encoders[AXES];
 static bool reset_levels[AXES];
 static int8_t directions[AXES];
+static double duties[AXES]; /* as applied */
+static guard_t guards[AXES];
+static bool initialise, model_valid;
 static double u[INPUTS], y[OUTPUTS];
-static bool model_valid;
-static uint32_t overruns_in_a_row;
+static status_t status;
+static uint32_t overruns_in_a_row, request_seen, turn_seen, silence;
 
-/* Shared by the cores; protected by the lock. */
-static critical_section_t lock;
-static double setpoints_given[AXES], positions_shown[AXES];
-static statistics_t statistics;
-static bool enable_asked, enabled;
+/*
+ * Shared by the cores.  The setpoints and the report pass through four buffers each, after H. Simpson: the writer never
+ * writes to the buffer that the reader uses, and neither side waits.
+ */
+typedef struct exchange {
+    atomic_uint latest;
+    atomic_uint reading;
+    atomic_uint newest[2];
+    atomic_bool written;
+} exchange_t;
+
+static exchange_t setpoint_exchange, report_exchange;
+static double setpoint_buffers[4][AXES];
+static report_t report_buffers[4];
+static atomic_uint request, dropped, turn;
+
+/* Communication side. */
+static double received[AXES];
+
+static unsigned int write_begin(exchange_t *exchange)
+{
+    const unsigned int pair = 1u - atomic_load(&exchange->reading);
+    return 2u * pair + 1u - atomic_load(&exchange->newest[pair]);
+}
+
+static void write_end(exchange_t *exchange, unsigned int buffer)
+{
+    atomic_store(&exchange->newest[buffer / 2u], buffer % 2u);
+    atomic_store(&exchange->latest, buffer / 2u);
+    atomic_store(&exchange->written, true);
+}
+
+static int read_begin(exchange_t *exchange)
+{
+    if (!atomic_load(&exchange->written)) {
+        return -1;
+    }
+    const unsigned int pair = atomic_load(&exchange->latest);
+    atomic_store(&exchange->reading, pair);
+    return (int)(2u * pair + atomic_load(&exchange->newest[pair]));
+}
 
 static bool is_finite(double value)
 {
@@ -67,12 +148,125 @@ static bool all_finite(const double *values, size_t count)
     return true;
 }
 
+static void latch(fault_t fault, size_t axis)
+{
+    if (status.fault == FAULT_NONE) {
+        status.fault = (uint8_t)fault;
+        status.axis = (uint8_t)axis;
+        status.statistics.faults++;
+    }
+    status.enabled = false;
+}
+
+/* Motion guards */
+
+static void guard_begin(guard_t *guard, double angle)
+{
+    guard->stall_origin = angle;
+    guard->stalled = 0;
+    guard->direction = 0;
+}
+
+static int8_t direction_of(double duty, double least)
+{
+    return (int8_t)(duty >= least ? 1 : duty <= -least ? -1 : 0);
+}
+
+/** True if the axis has moved RUNAWAY_ANGLE against its drive, and was not slower in the second half of this way. */
+static bool runs_away(guard_t *guard, double angle, double duty)
+{
+    const int8_t direction = direction_of(duty, RUNAWAY_DUTY);
+    const double against = direction > 0 ? guard->best - angle : angle - guard->best;
+    if (direction == 0 || direction != guard->direction || against <= 0.0) {
+        guard->direction = direction;
+        guard->best = angle;
+        guard->cycles = 0;
+        guard->half_cycles = 0;
+        return false;
+    }
+    guard->cycles++;
+    if (guard->half_cycles == 0 && against >= 0.5 * RUNAWAY_ANGLE) {
+        guard->half_cycles = guard->cycles;
+        guard->half_travelled = against;
+    }
+    if (against < RUNAWAY_ANGLE) {
+        return false;
+    }
+    guard->direction = 0;
+    return (against - guard->half_travelled) * guard->half_cycles >=
+           guard->half_travelled * (guard->cycles - guard->half_cycles);
+}
+
+/** True if the axis was driven in one direction for STALL_CYCLES without moving by STALL_ANGLE. */
+static bool stalls(guard_t *guard, double angle, double duty)
+{
+    const double moved = angle - guard->stall_origin;
+    if (moved >= STALL_ANGLE || moved <= -STALL_ANGLE) {
+        guard->stall_origin = angle;
+        guard->stalled = 0;
+        return false;
+    }
+    const int8_t direction = direction_of(duty, STALL_DUTY);
+    if (direction != 0) {
+        guard->stalled += direction;
+    } else if (guard->stalled != 0) {
+        guard->stalled -= guard->stalled > 0 ? 1 : -1;
+    }
+    return guard->stalled >= STALL_CYCLES || guard->stalled <= -STALL_CYCLES;
+}
+
+static fault_t homes(guard_t *guard, double travel, double angle, double duty)
+{
+    const double travelled = angle - guard->homing_origin;
+    if (travelled > travel || travelled < -travel) {
+        return FAULT_HOMING_TRAVEL;
+    }
+    if (duty != 0.0) {
+        guard->driven++;
+    }
+    return guard->driven > HOMING_CYCLES ? FAULT_HOMING_TIME : FAULT_NONE;
+}
+
+static void check_motion(size_t n)
+{
+    guard_t *guard = &guards[n];
+    const double angle = u[POSITION + n];
+    fault_t fault = FAULT_NONE;
+    if (!status.enabled) {
+        guard->armed = false;
+        return;
+    }
+    if (!guard->armed || guard->moved) {
+        guard->homing = !guard->armed;
+        if (guard->homing) {
+            guard->homing_origin = angle;
+            guard->driven = 0;
+        }
+        guard->armed = true;
+        guard->moved = false;
+        guard_begin(guard, angle);
+    }
+    if (runs_away(guard, angle, duties[n])) {
+        fault = FAULT_RUNAWAY;
+    } else if (guard->homing) {
+        fault = homes(guard, axes[n].homing_travel, angle, duties[n]);
+    } else if (stalls(guard, angle, duties[n])) {
+        fault = FAULT_STALL;
+    }
+    if (fault != FAULT_NONE) {
+        latch(fault, n);
+    }
+}
+
+/* Outputs */
+
 static void bridge_off(size_t n)
 {
     pwm_set_chan_level(axes[n].slice, PWM_CHAN_A, 0);
     gpio_put(axes[n].direction_a, false);
     gpio_put(axes[n].direction_b, false);
     directions[n] = 0;
+    duties[n] = 0.0;
 }
 
 static void bridge_write(size_t n, double duty)
@@ -80,6 +274,7 @@ static void bridge_write(size_t n, double duty)
     double size = duty < 0.0 ? -duty : duty;
     if (size > 1.0) {
         size = 1.0;
+        status.statistics.clamped++;
     }
     const uint32_t level = (uint32_t)(size * (PWM_TOP + 1.0) + 0.5);
     const int8_t direction = level == 0 ? 0 : duty < 0.0 ? -1 : 1;
@@ -89,6 +284,7 @@ static void bridge_write(size_t n, double duty)
         gpio_put(axes[n].direction_b, direction < 0);
         directions[n] = direction;
     }
+    duties[n] = direction == 0 ? 0.0 : direction < 0 ? -size : size;
     pwm_set_chan_level(axes[n].slice, PWM_CHAN_A, (uint16_t)level);
 }
 
@@ -97,42 +293,13 @@ static void encoder_reset(size_t n, double signal)
     const bool level = signal > 0.5;
     if (level && !reset_levels[n]) {
         epg_pico_quadrature_preset(&encoders[n], 0);
+        guards[n].moved = true;
     }
     reset_levels[n] = level;
 }
 
 /* Not inlined, so that the benchmark can measure the parts of a cycle separately. */
 #define PART __attribute__((noinline))
-
-static PART bool read_inputs(void)
-{
-    bool good = true;
-    for (size_t n = 0; n < AXES; n++) {
-        int64_t counts;
-        good = epg_pico_quadrature_read(&encoders[n], &counts) == EPG_PICO_QUADRATURE_OK && good;
-        u[POSITION + n] = (double)counts * axes[n].rad_per_count;
-    }
-    critical_section_enter_blocking(&lock);
-    memcpy(&u[SETPOINT], setpoints_given, sizeof setpoints_given);
-    if (enable_asked && !enabled) {
-        model_valid = false;
-    }
-    enabled = enable_asked;
-    critical_section_exit(&lock);
-    return good && all_finite(u, INPUTS);
-}
-
-static PART bool step_model(void)
-{
-    if (!model_valid) {
-        xx_time = 0.0;
-        xx_initialize = 1;
-        XXInitializeSubmodel(u, y, 0.0);
-        model_valid = true;
-    }
-    XXCalculateSubmodel(u, y, xx_time);
-    return all_finite(y, OUTPUTS) && all_finite(xx_s, xx_states_size) && all_finite(xx_R, xx_states_size);
-}
 
 static PART void write_outputs(bool drive)
 {
@@ -147,41 +314,162 @@ static PART void write_outputs(bool drive)
     }
 }
 
-static void count(uint32_t begin_us, uint32_t due_us)
+/* Inputs */
+
+static void take_request(void)
 {
-    const uint32_t end_us = time_us_32();
-    const bool overrun = end_us - due_us > PERIOD_US;
-    overruns_in_a_row = overrun ? overruns_in_a_row + 1u : 0u;
-    critical_section_enter_blocking(&lock);
-    statistics.cycles++;
-    statistics.overruns += overrun ? 1u : 0u;
-    if (end_us - begin_us > statistics.computation_max_us) {
-        statistics.computation_max_us = end_us - begin_us;
+    const unsigned int newest = atomic_load(&request);
+    if (newest == request_seen) {
+        return;
     }
-    positions_shown[PAN] = y[LOGGING_PAN];
-    positions_shown[TILT] = y[LOGGING_TILT];
+    request_seen = newest;
+    if ((newest & 1u) == 0u) {
+        status.enabled = false;
+    } else if (!status.enabled) {
+        status.fault = FAULT_NONE;
+        status.enabled = true;
+        initialise = true;
+        overruns_in_a_row = 0;
+    }
+}
+
+static PART bool read_inputs(void)
+{
+    for (size_t n = 0; n < AXES; n++) {
+        int64_t counts;
+        if (epg_pico_quadrature_read(&encoders[n], &counts) != EPG_PICO_QUADRATURE_OK) {
+            latch(FAULT_SENSOR, n);
+        }
+        u[POSITION + n] = (double)counts * axes[n].rad_per_count;
+    }
+    const int buffer = read_begin(&setpoint_exchange);
+    if (buffer >= 0) {
+        memcpy(&u[SETPOINT], setpoint_buffers[buffer], sizeof setpoint_buffers[buffer]);
+    }
+    take_request();
+    for (size_t n = 0; n < AXES; n++) {
+        check_motion(n);
+    }
+    if (!all_finite(u, INPUTS)) {
+        initialise = false;
+        model_valid = false;
+        latch(FAULT_NOT_FINITE, AXES);
+        return false;
+    }
+    return true;
+}
+
+/* Model */
+
+static void start_model(void)
+{
+    memset(xx_V, 0, xx_variables_size * sizeof xx_V[0]);
+    memset(xx_s, 0, xx_states_size * sizeof xx_s[0]);
+    memset(xx_R, 0, xx_states_size * sizeof xx_R[0]);
+    xx_time = 0.0;
+    xx_steps = 0;
+    xx_stop_simulation = 0;
+    XXInitializeSubmodel(u, y, 0.0);
+    initialise = false;
+    model_valid = true;
+}
+
+static bool step_model(void)
+{
+    if (initialise) {
+        start_model();
+    }
+    if (!model_valid) {
+        return false; /* stopped after a fault, until the target is enabled */
+    }
+    XXCalculateSubmodel(u, y, xx_time);
+    if (!all_finite(y, OUTPUTS) || !all_finite(xx_s, xx_states_size) || !all_finite(xx_R, xx_states_size)) {
+        model_valid = false;
+        latch(FAULT_NOT_FINITE, AXES);
+        return false;
+    }
+    if (xx_stop_simulation) {
+        model_valid = false;
+        latch(FAULT_STOPPED, AXES);
+    }
+    return true;
+}
+
+/* Statistics */
+
+static void count_cycle(uint32_t lateness, uint32_t computation, uint32_t missed)
+{
+    statistics_t *statistics = &status.statistics;
+    statistics->cycles++;
+    if (lateness > statistics->lateness_max) {
+        statistics->lateness_max = lateness;
+    }
+    if (computation < statistics->computation_min || statistics->cycles == 1u) {
+        statistics->computation_min = computation;
+    }
+    if (computation > statistics->computation_max) {
+        statistics->computation_max = computation;
+    }
+    statistics->computation_total += computation;
+    if (lateness + computation <= PERIOD_CLOCKS && missed == 0u) {
+        overruns_in_a_row = 0;
+        return;
+    }
+    statistics->overruns++;
+    statistics->missed += missed;
+    overruns_in_a_row++;
     if (overruns_in_a_row >= OVERRUN_LIMIT) {
-        enable_asked = false;
+        latch(FAULT_OVERRUN, AXES);
+        write_outputs(false);
     }
-    critical_section_exit(&lock);
+}
+
+/** Counts the cycles since the last turn of the communication side, and feeds the watchdog while there are turns. */
+static void watch_communication(void)
+{
+    const unsigned int newest = atomic_load(&turn);
+    if (newest != turn_seen) {
+        turn_seen = newest;
+        silence = 0;
+    } else if (newest != 0u) {
+        silence++;
+        if (silence > status.statistics.silence_max) {
+            status.statistics.silence_max = silence;
+        }
+    }
+    if (silence < SILENCE_LIMIT) {
+        watchdog_update();
+    }
+}
+
+static void publish(uint32_t due_us)
+{
+    const unsigned int buffer = write_begin(&report_exchange);
+    report_t *report = &report_buffers[buffer];
+    status.statistics.dropped = atomic_load(&dropped);
+    memcpy(report->inputs, u, sizeof u);
+    memcpy(report->outputs, y, sizeof y);
+    report->due_us = due_us;
+    report->status = status;
+    write_end(&report_exchange, buffer);
 }
 
 /* The compiler would inline this function, because it is called in one place only.  The benchmark needs its name. */
-__attribute__((noinline)) void control_cycle(uint32_t due_us)
+__attribute__((noinline)) void control_cycle(uint32_t due_us, uint32_t lateness, uint32_t missed)
 {
-    const uint32_t begin_us = time_us_32();
-    const bool good = read_inputs() && step_model();
-    if (!good) {
-        enable_asked = false;
+    const uint32_t begin = systick_hw->cvr;
+    const bool stepped = read_inputs() && step_model();
+    if (stepped || !status.enabled) {
+        write_outputs(status.enabled);
     }
-    write_outputs(enabled && good);
-    count(begin_us, due_us);
+    count_cycle(lateness, (begin - systick_hw->cvr) & SYSTICK_MASK, missed);
+    watch_communication();
+    publish(due_us);
 }
 
 void control_start(uint32_t more)
 {
     uint32_t mask = more;
-    critical_section_init(&lock);
     for (size_t n = 0; n < AXES; n++) {
         const axis_t *axis = &axes[n];
         const epg_pico_quadrature_config_t config = {.pin_a = axis->encoder_a,
@@ -200,36 +488,45 @@ void control_start(uint32_t more)
         gpio_set_function(2u * axis->slice, GPIO_FUNC_PWM);
         mask |= 1u << axis->slice;
     }
-    enable_asked = true;
-    enabled = true;
+    systick_hw->rvr = SYSTICK_MASK;
+    systick_hw->csr = M0PLUS_SYST_CSR_CLKSOURCE_BITS | M0PLUS_SYST_CSR_ENABLE_BITS;
+    initialise = true;
+    status.enabled = true;
+    watchdog_enable(WATCHDOG_MS, true);
     hw_set_bits(&pwm_hw->en, mask);
 }
 
-void control_setpoints(const double setpoints[AXES])
+/* Communication side */
+
+void control_setpoint(uint32_t axis, double value)
 {
-    critical_section_enter_blocking(&lock);
-    memcpy(setpoints_given, setpoints, sizeof setpoints_given);
-    critical_section_exit(&lock);
+    if (!is_finite(value)) {
+        atomic_store(&dropped, atomic_load(&dropped) + 1u);
+        return;
+    }
+    received[axis] = value;
+    const unsigned int buffer = write_begin(&setpoint_exchange);
+    memcpy(setpoint_buffers[buffer], received, sizeof received);
+    write_end(&setpoint_exchange, buffer);
 }
 
-void control_positions(double positions[AXES])
+bool control_report(report_t *report)
 {
-    critical_section_enter_blocking(&lock);
-    memcpy(positions, positions_shown, sizeof positions_shown);
-    critical_section_exit(&lock);
-}
-
-void control_statistics(statistics_t *copy)
-{
-    critical_section_enter_blocking(&lock);
-    *copy = statistics;
-    copy->enabled = enabled;
-    critical_section_exit(&lock);
+    const int buffer = read_begin(&report_exchange);
+    if (buffer >= 0) {
+        *report = report_buffers[buffer];
+    }
+    return buffer >= 0;
 }
 
 void control_enable(bool enable)
 {
-    critical_section_enter_blocking(&lock);
-    enable_asked = enable;
-    critical_section_exit(&lock);
+    const unsigned int sequence = (atomic_load(&request) | 1u) + 1u;
+    atomic_store(&request, sequence | (enable ? 1u : 0u));
+}
+
+void control_alive(void)
+{
+    const unsigned int next = atomic_load(&turn) + 1u;
+    atomic_store(&turn, next == 0u ? 1u : next); /* 0 means never */
 }

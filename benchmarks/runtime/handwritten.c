@@ -5,8 +5,8 @@
  *
  * Pan and tilt have an encoder and an H-bridge each.  There are two setpoints and two published values; the control
  * period is 1 ms.  The program does the same as the generated target with the same configuration: wait-free exchanges,
- * statistics, status, faults, and tests for values that are not finite.  Functions that this robot does not configure
- * are left out: timeout and rate limit of setpoints, fail-safe inputs, conversions, step dividers.  Numbers are
+ * statistics, status, faults, motion guards, and tests for values that are not finite.  Functions that this robot does
+ * not configure are left out: timeout and rate limit of setpoints, fail-safe inputs, conversions, step dividers.  Numbers are
  * constants, everything for the cycle is in this file, and the model's functions and arrays are used directly.
  */
 #include <stdatomic.h>
@@ -27,6 +27,19 @@
 #define PAN_RAD_PER_COUNT 0.002825173249631109  /* 180 degrees in 1112 counts */
 #define TILT_RAD_PER_COUNT 0.007107675686854735 /* 90 degrees in 221 counts */
 
+/* Limits of the motion guards: angles in rad, times in cycles. */
+#define STALL_DUTY 0.3
+#define STALL_ANGLE 0.017453292519943295 /* 1 degree */
+#define STALL_CYCLES 500
+#define RUNAWAY_DUTY 0.04
+#define RUNAWAY_ANGLE 0.3490658503988659      /* 20 degrees */
+#define PAN_HOMING_TRAVEL 3.490658503988659   /* 200 degrees */
+#define TILT_HOMING_TRAVEL 1.9198621771937625 /* 110 degrees */
+#define HOMING_CYCLES 10000u
+
+/* The numbers of faults that the runtime leaves to components. */
+enum { FAULT_STALL = 6, FAULT_RUNAWAY, FAULT_HOMING_TRAVEL, FAULT_HOMING_TIME, FAULT_SENSOR };
+
 /* The model that 20-sim has exported (xxsubmod.c, xxmodel.c). */
 extern void XXInitializeSubmodel(double *u, double *y, double t);
 extern void XXCalculateSubmodel(double *u, double *y, double t);
@@ -46,7 +59,23 @@ typedef struct encoder {
 
 typedef struct bridge {
     int8_t direction;
+    double duty; /* as applied */
 } bridge_t;
+
+typedef struct guard {
+    bool armed;
+    bool homing;
+    bool moved;       /* a reset has moved the angle */
+    int8_t direction; /* of the drive; 0: none */
+    int32_t stalled;  /* cycles driven without motion; negative: backwards */
+    double stall_origin;
+    double homing_origin;
+    uint32_t driven;       /* cycles of homing in which the motor was driven */
+    double best;           /* the angle farthest in `direction` */
+    uint32_t cycles;       /* since that angle */
+    uint32_t half_cycles;  /* from that angle to half of RUNAWAY_ANGLE; 0: not yet */
+    double half_travelled; /* distance from that angle at that time */
+} guard_t;
 
 /* The control words of an exchange with four buffers, after H. Simpson. */
 typedef struct exchange {
@@ -65,6 +94,7 @@ enum { PAN_A = 5, PAN_B = 6, TILT_A = 8, TILT_B = 9 };
 /* Control side. */
 static encoder_t encoder_pan, encoder_tilt;
 static bridge_t bridge_pan, bridge_tilt;
+static guard_t guard_pan, guard_tilt;
 static double u[INPUTS], y[OUTPUTS], setpoints[GLUE_SETPOINTS];
 static epg_statistics_t statistics;
 static epg_fault_t fault;
@@ -128,11 +158,12 @@ static double encoder_sample(encoder_t *encoder, const epg_port_quadrature_t *de
     return (double)encoder->counts * rad_per_count;
 }
 
-static void encoder_reset(encoder_t *encoder, double signal)
+static void encoder_reset(encoder_t *encoder, guard_t *guard, double signal)
 {
     const bool level = signal > 0.5;
     if (level && !encoder->reset_level) {
         encoder->counts = 0;
+        guard->moved = true;
     }
     encoder->reset_level = level;
 }
@@ -145,6 +176,7 @@ static void bridge_safe(bridge_t *bridge, const epg_port_pwm_t *pwm, uint8_t pin
     epg_port_output_write(pin_a, false);
     epg_port_output_write(pin_b, false);
     bridge->direction = 0;
+    bridge->duty = 0.0;
 }
 
 static void bridge_write(bridge_t *bridge, const epg_port_pwm_t *pwm, uint8_t pin_a, uint8_t pin_b, double duty)
@@ -168,6 +200,7 @@ static void bridge_write(bridge_t *bridge, const epg_port_pwm_t *pwm, uint8_t pi
         }
         bridge->direction = direction;
     }
+    bridge->duty = direction == 0 ? 0.0 : direction < 0 ? -magnitude : magnitude;
     epg_port_pwm_write(pwm, level);
 }
 
@@ -229,6 +262,104 @@ static void latch(epg_fault_t cause)
         statistics.faults++;
     }
     enabled = false;
+}
+
+/* Motion guards */
+
+static void guard_begin(guard_t *guard, double angle)
+{
+    guard->stall_origin = angle;
+    guard->stalled = 0;
+    guard->direction = 0;
+}
+
+static int8_t direction_of(double duty, double least)
+{
+    return (int8_t)(duty >= least ? 1 : duty <= -least ? -1 : 0);
+}
+
+/** True if the axis has moved RUNAWAY_ANGLE against its drive, and was not slower in the second half of this way. */
+static bool runs_away(guard_t *guard, double angle, double duty)
+{
+    const int8_t direction = direction_of(duty, RUNAWAY_DUTY);
+    const double against = direction > 0 ? guard->best - angle : angle - guard->best;
+    if (direction == 0 || direction != guard->direction || against <= 0.0) {
+        guard->direction = direction;
+        guard->best = angle;
+        guard->cycles = 0;
+        guard->half_cycles = 0;
+        return false;
+    }
+    guard->cycles++;
+    if (guard->half_cycles == 0 && against >= 0.5 * RUNAWAY_ANGLE) {
+        guard->half_cycles = guard->cycles;
+        guard->half_travelled = against;
+    }
+    if (against < RUNAWAY_ANGLE) {
+        return false;
+    }
+    guard->direction = 0;
+    return (against - guard->half_travelled) * guard->half_cycles >=
+           guard->half_travelled * (guard->cycles - guard->half_cycles);
+}
+
+/** True if the axis was driven in one direction for STALL_CYCLES without moving by STALL_ANGLE. */
+static bool stalls(guard_t *guard, double angle, double duty)
+{
+    const double moved = angle - guard->stall_origin;
+    if (moved >= STALL_ANGLE || moved <= -STALL_ANGLE) {
+        guard->stall_origin = angle;
+        guard->stalled = 0;
+        return false;
+    }
+    const int8_t direction = direction_of(duty, STALL_DUTY);
+    if (direction != 0) {
+        guard->stalled += direction;
+    } else if (guard->stalled != 0) {
+        guard->stalled -= guard->stalled > 0 ? 1 : -1;
+    }
+    return guard->stalled >= STALL_CYCLES || guard->stalled <= -STALL_CYCLES;
+}
+
+static epg_fault_t homes(guard_t *guard, double travel, double angle, double duty)
+{
+    const double travelled = angle - guard->homing_origin;
+    if (travelled > travel || travelled < -travel) {
+        return (epg_fault_t)FAULT_HOMING_TRAVEL;
+    }
+    if (duty != 0.0) {
+        guard->driven++;
+    }
+    return guard->driven > HOMING_CYCLES ? (epg_fault_t)FAULT_HOMING_TIME : EPG_FAULT_NONE;
+}
+
+static void check_motion(guard_t *guard, double travel, double angle, double duty)
+{
+    epg_fault_t cause = EPG_FAULT_NONE;
+    if (!enabled) {
+        guard->armed = false;
+        return;
+    }
+    if (!guard->armed || guard->moved) {
+        guard->homing = !guard->armed;
+        if (guard->homing) {
+            guard->homing_origin = angle;
+            guard->driven = 0;
+        }
+        guard->armed = true;
+        guard->moved = false;
+        guard_begin(guard, angle);
+    }
+    if (runs_away(guard, angle, duty)) {
+        cause = (epg_fault_t)FAULT_RUNAWAY;
+    } else if (guard->homing) {
+        cause = homes(guard, travel, angle, duty);
+    } else if (stalls(guard, angle, duty)) {
+        cause = (epg_fault_t)FAULT_STALL;
+    }
+    if (cause != EPG_FAULT_NONE) {
+        latch(cause);
+    }
 }
 
 static void handle_request(void)
@@ -338,8 +469,10 @@ void glue_cycle(uint64_t tick_ns, uint32_t missed)
     u[POSITION_PAN] = encoder_sample(&encoder_pan, &decoder_pan, PAN_RAD_PER_COUNT);
     u[POSITION_TILT] = encoder_sample(&encoder_tilt, &decoder_tilt, TILT_RAD_PER_COUNT);
     if (!epg_port_quadrature_healthy(&decoder_pan) || !epg_port_quadrature_healthy(&decoder_tilt)) {
-        latch((epg_fault_t)10); /* `sensor` of a quadrature_encoder */
+        latch((epg_fault_t)FAULT_SENSOR);
     }
+    check_motion(&guard_pan, PAN_HOMING_TRAVEL, u[POSITION_PAN], bridge_pan.duty);
+    check_motion(&guard_tilt, TILT_HOMING_TRAVEL, u[POSITION_TILT], bridge_tilt.duty);
     u[SETPOINT_PAN] = setpoints[0];
     u[SETPOINT_TILT] = setpoints[1];
     const bool stepped = run_model();
@@ -347,8 +480,8 @@ void glue_cycle(uint64_t tick_ns, uint32_t missed)
     if (!enabled) {
         safe_outputs();
     } else if (stepped) {
-        encoder_reset(&encoder_pan, y[RESET_PAN]);
-        encoder_reset(&encoder_tilt, y[RESET_TILT]);
+        encoder_reset(&encoder_pan, &guard_pan, y[RESET_PAN]);
+        encoder_reset(&encoder_tilt, &guard_tilt, y[RESET_TILT]);
         bridge_write(&bridge_pan, &pwm_pan, PAN_A, PAN_B, y[DUTY_PAN]);
         bridge_write(&bridge_tilt, &pwm_tilt, TILT_A, TILT_B, y[DUTY_TILT]);
     }

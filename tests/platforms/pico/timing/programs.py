@@ -47,6 +47,7 @@ def by_hand(executable: str) -> Program:
     title, platform, core = {
         "by_hand_alarm_core0": ("alarm pool, core 0", "bare_metal", 0),
         "by_hand_alarm_core1": ("alarm pool, core 1", "bare_metal", 1),
+        "by_hand_wrap_core1": ("PWM wrap, core 1", "bare_metal", 1),
         "by_hand_smp": ("FreeRTOS SMP, core 1 parked", "smp", 1),
     }[executable]
     return Program(title, platform, executable, core, "on_tick", "read_inputs", "write_outputs")
