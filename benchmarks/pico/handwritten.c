@@ -27,6 +27,7 @@
 #define PWM_TOP (SYS_CLK_HZ / 20000u - 1u) /* 20 kHz */
 #define PERIOD_CLOCKS (PERIOD_US * CLOCKS_PER_US)
 #define SYSTICK_MASK 0xFFFFFFu
+#define SYSTICK_RUNNING 0x5u /* enabled, at the clock of the processor */
 #define OVERRUN_LIMIT 10u
 #define WATCHDOG_MS 100u
 #define SILENCE_LIMIT 500u /* cycles without a turn of communication, after which the watchdog is not fed */
@@ -489,7 +490,7 @@ void control_start(uint32_t more)
         mask |= 1u << axis->slice;
     }
     systick_hw->rvr = SYSTICK_MASK;
-    systick_hw->csr = M0PLUS_SYST_CSR_CLKSOURCE_BITS | M0PLUS_SYST_CSR_ENABLE_BITS;
+    systick_hw->csr = SYSTICK_RUNNING;
     initialise = true;
     status.enabled = true;
     watchdog_enable(WATCHDOG_MS, true);

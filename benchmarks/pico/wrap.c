@@ -12,7 +12,7 @@
 #include "pico/stdlib.h"
 
 #define TICK_SLICE 7u
-#define TICK_PRESCALER 2u
+#define TICK_PRESCALER (SYS_CLK_HZ > 131000000u ? 3u : 2u) /* the counter has 16 bits */
 #define TICK_TOP (SYS_CLK_HZ / 1000000u * PERIOD_US / TICK_PRESCALER - 1u)
 #define TIMER_US 1u /* resolution of the timer */
 
