@@ -93,6 +93,7 @@ function(_epg_rp2_check_executables name usb directory)
     if("${name}" IN_LIST libraries OR "EPG::${name}" IN_LIST libraries)
       if(usb)
         _epg_rp2_check_stdio("${name}" "${target}" "${libraries}")
+        _epg_rp2_small_usb("${target}")
       endif()
       get_target_property(definitions ${target} COMPILE_DEFINITIONS)
       list(FILTER definitions INCLUDE REGEX "^(-D)?PICO_NO_RAM_VECTOR_TABLE(=1)?$")
@@ -136,7 +137,6 @@ endfunction()
 # in_ram.ld stops the link with an error if the user's linker script puts the control cycle into flash.
 function(_epg_rp2_in_ram name)
   _epg_mcu_name_archives(_libm ${name} epg_runtime ${EPG_MODELS})
-  _epg_mcu_name_archives("" epg_communication) # stays in flash
 endfunction()
 
 # Adds the SDK's libraries, definitions and linker options to <library>, the port layer of all targets.
@@ -186,6 +186,17 @@ function(_epg_rp2_usb_library)
     "${shared}/descriptors.c" "${shared}/serial.c")
   target_include_directories(epg_pico_usb INTERFACE "${folder}/include")
   target_link_libraries(epg_pico_usb INTERFACE tinyusb_device_unmarked pico_usb_reset_interface_headers)
+endfunction()
+
+# Compiles the USB device in <executable> for size, as the libraries of the communication side.
+function(_epg_rp2_small_usb executable)
+  _epg_mcu_small_options(options)
+  foreach(library epg_pico_usb tinyusb_device_base tinyusb_common_base)
+    if(TARGET ${library})
+      get_target_property(sources ${library} INTERFACE_SOURCES)
+      set_property(SOURCE ${sources} TARGET_DIRECTORY ${executable} APPEND PROPERTY COMPILE_OPTIONS ${options})
+    endif()
+  endforeach()
 endfunction()
 
 # Makes an <executable> with EPG's main() run from RAM, and adds its output files for flashing (.uf2, .hex, .bin).  The

@@ -35,7 +35,8 @@ function(_epg_middleware_xrce library)
     "${headers}" "${micro_cdr}/include" "${micro_xrce_dds_client}/include")
   set_target_properties(epg_micro_xrce_dds_client PROPERTIES C_STANDARD 99 C_STANDARD_REQUIRED ON)
   if(CMAKE_C_COMPILER_ID MATCHES "GNU|Clang")
-    target_compile_options(epg_micro_xrce_dds_client PRIVATE -w -ffunction-sections -fdata-sections)
+    target_compile_options(epg_micro_xrce_dds_client PRIVATE -w -ffunction-sections -fdata-sections
+      $<TARGET_PROPERTY:${library},COMPILE_OPTIONS>) # for size, for example
   endif()
   if(TARGET zephyr_interface)
     target_link_libraries(epg_micro_xrce_dds_client PRIVATE zephyr_interface) # the processor's flags

@@ -31,6 +31,28 @@ function(_epg_mcu_name_archives suffix)
   endforeach()
 endfunction()
 
+# Sets <result> to the options of the compiler for code of the communication side: for size instead of speed, except in
+# Debug builds.  Nothing in it is time-critical.  On a Pico it runs from flash, where small code also leaves more of the
+# cache to others.
+function(_epg_mcu_small_options result)
+  set(${result} "$<$<CONFIG:Release,RelWithDebInfo>:-Os>" PARENT_SCOPE)
+endfunction()
+
+# _epg_mcu_small(<library>...)
+#
+# Compiles libraries of the communication side for size.  Functions and variables have sections of their own, so the
+# linker removes unused ones.
+function(_epg_mcu_small)
+  _epg_mcu_small_options(options)
+  foreach(library IN LISTS ARGN)
+    get_target_property(done ${library} EPG_SMALL)
+    if(NOT done)
+      set_target_properties(${library} PROPERTIES EPG_SMALL TRUE)
+      target_compile_options(${library} PRIVATE -ffunction-sections -fdata-sections ${options})
+    endif()
+  endforeach()
+endfunction()
+
 # Adds the port layer to target <name>.  SERVICE lists the sources that run the communication side on the platform;
 # LIBRARIES lists the libraries that they need.
 function(_epg_mcu_target name)
@@ -45,6 +67,14 @@ function(_epg_mcu_target name)
     target_include_directories(epg_mcu INTERFACE "${shared}/include" "${family}/include")
     cmake_language(CALL _epg_${EPG_FAMILY}_library epg_mcu)
   endif()
+
+  set(communication epg_communication)
+  foreach(middleware IN LISTS EPG_MIDDLEWARES)
+    if(TARGET epg_middleware_${middleware})
+      list(APPEND communication epg_middleware_${middleware})
+    endif()
+  endforeach()
+  _epg_mcu_small(${communication})
 
   # An interface library: the sources must be compiled into the executable, not into the target's static library.
   add_library(${name}_port INTERFACE)

@@ -77,6 +77,17 @@ bool epg_names_is_node(const char *text)
     return length > 0 && text[length] == '\0' && has_room(text);
 }
 
+/** Returns true if there are two underscores in a row in `text`, which names of ROS 2 must not have. */
+static bool has_double_underscore(const char *text)
+{
+    for (; *text != '\0'; text++) {
+        if (text[0] == '_' && text[1] == '_') {
+            return true;
+        }
+    }
+    return false;
+}
+
 bool epg_names_is_space(const char *text)
 {
     if (strcmp(text, "/") == 0) {
@@ -91,7 +102,7 @@ bool epg_names_is_space(const char *text)
         }
         rest += 1 + length;
     }
-    return *rest == '\0' && length > 0 && strstr(text, "__") == NULL && has_room(text);
+    return *rest == '\0' && length > 0 && !has_double_underscore(text) && has_room(text);
 }
 
 const char *epg_names_node(const epg_target_t *target)
