@@ -17,7 +17,7 @@ def messages() -> list[tuple[str, str]]:
     found = []
     for source in sorted((RUNTIME / "src").glob("*/*.c")):
         text = source.read_text().replace("\\\n", "\n")  # also in macros
-        found += re.findall(r'\.type = "([^"]*)",\s*\.hash =\s*"([^"]*)"', text)
+        found += re.findall(r'\.type = "([^"]*)",\s*\.hash =\s*EPG_TYPE_HASH\("([^"]*)"\)', text)
     return found
 
 

@@ -22,6 +22,7 @@ function(_epg_middleware_dds library)
     set_target_properties(CycloneDDS::ddsc PROPERTIES IMPORTED_GLOBAL TRUE)
   endif()
   target_link_libraries(${library} PRIVATE CycloneDDS::ddsc)
+  target_compile_definitions(epg_communication PUBLIC EPG_TYPE_HASHES=1) # announced to other nodes
   # CycloneDDS's headers use `asm`, which is not a keyword of C11.
   target_compile_definitions(${library} PRIVATE asm=__asm__)
   set_target_properties(${library} PROPERTIES C_STANDARD 11 C_STANDARD_REQUIRED ON)

@@ -22,10 +22,20 @@ typedef struct epg_stamp {
     uint32_t nanoseconds;
 } epg_stamp_t;
 
+/**
+ * The hash of a type, for `epg_message_t` and `epg_service_type_t`.  A middleware that needs it compiles the runtime with
+ * EPG_TYPE_HASHES=1; otherwise it is NULL, which saves 72 bytes for each type.
+ */
+#if defined(EPG_TYPE_HASHES) && EPG_TYPE_HASHES
+#define EPG_TYPE_HASH(text) text
+#else
+#define EPG_TYPE_HASH(text) NULL
+#endif
+
 /** A message type. */
 typedef struct epg_message {
     const char *type; /**< its name in DDS: "std_msgs::msg::dds_::Float64_" */
-    const char *hash; /**< "RIHS01_" and 64 hexadecimal digits */
+    const char *hash; /**< EPG_TYPE_HASH() of "RIHS01_" and 64 hexadecimal digits */
     /**
      * Writes `topic->count` values with their time stamp as CDR (epg/cdr.h).  Returns the number of bytes written, 0 if
      * `size` is too small.  NULL: the type can only be subscribed to.

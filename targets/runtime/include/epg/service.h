@@ -33,10 +33,10 @@
 
 struct epg_reply; /* the writer of a reply: src/reply.h */
 
-/** The type of a request or of a reply: its name in DDS, and "RIHS01_" with 64 hexadecimal digits. */
+/** The type of a request or of a reply. */
 typedef struct epg_service_type {
-    const char *type;
-    const char *hash;
+    const char *type; /**< its name in DDS */
+    const char *hash; /**< EPG_TYPE_HASH() of "RIHS01_" and 64 hexadecimal digits */
 } epg_service_type_t;
 
 /** The behaviour of a service. */

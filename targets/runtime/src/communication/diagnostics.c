@@ -138,7 +138,7 @@ size_t epg_diagnostics_write(epg_node_t *node, epg_stamp_t stamp, void *data, si
 
 const epg_message_t epg_message_diagnostic_array = {
     .type = "diagnostic_msgs::msg::dds_::DiagnosticArray_",
-    .hash = "RIHS01_5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e",
+    .hash = EPG_TYPE_HASH("RIHS01_5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e"),
     .write = NULL,
     .read = NULL,
 };

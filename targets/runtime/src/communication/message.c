@@ -94,28 +94,28 @@ static bool read_bool(const epg_topic_t *topic, const void *data, size_t size, d
 
 const epg_message_t epg_message_float64 = {
     .type = "std_msgs::msg::dds_::Float64_",
-    .hash = "RIHS01_705ba9c3d1a09df43737eb67095534de36fd426c0587779bda2bc51fe790182a",
+    .hash = EPG_TYPE_HASH("RIHS01_705ba9c3d1a09df43737eb67095534de36fd426c0587779bda2bc51fe790182a"),
     .write = write_float64,
     .read = read_float64,
 };
 
 const epg_message_t epg_message_float32 = {
     .type = "std_msgs::msg::dds_::Float32_",
-    .hash = "RIHS01_7170d3d8f841f7be3172ce5f4f59f3a4d7f63b0447e8b33327601ad64d83d6e2",
+    .hash = EPG_TYPE_HASH("RIHS01_7170d3d8f841f7be3172ce5f4f59f3a4d7f63b0447e8b33327601ad64d83d6e2"),
     .write = write_float32,
     .read = read_float32,
 };
 
 const epg_message_t epg_message_int32 = {
     .type = "std_msgs::msg::dds_::Int32_",
-    .hash = "RIHS01_b6578ded3c58c626cfe8d1a6fb6e04f706f97e9f03d2727c9ff4e74b1cef0deb",
+    .hash = EPG_TYPE_HASH("RIHS01_b6578ded3c58c626cfe8d1a6fb6e04f706f97e9f03d2727c9ff4e74b1cef0deb"),
     .write = write_int32,
     .read = read_int32,
 };
 
 const epg_message_t epg_message_bool = {
     .type = "std_msgs::msg::dds_::Bool_",
-    .hash = "RIHS01_feb91e995ff9ebd09c0cb3d2aed18b11077585839fb5db80193b62d74528f6c9",
+    .hash = EPG_TYPE_HASH("RIHS01_feb91e995ff9ebd09c0cb3d2aed18b11077585839fb5db80193b62d74528f6c9"),
     .write = write_bool,
     .read = read_bool,
 };

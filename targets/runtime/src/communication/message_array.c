@@ -48,7 +48,7 @@ static bool read_array(const epg_topic_t *topic, const void *data, size_t size, 
 
 const epg_message_t epg_message_float64_array = {
     .type = "std_msgs::msg::dds_::Float64MultiArray_",
-    .hash = "RIHS01_1025ddc6b9552d191f89ef1a8d2f60f3d373e28b283d8891ddcc974e8c55397f",
+    .hash = EPG_TYPE_HASH("RIHS01_1025ddc6b9552d191f89ef1a8d2f60f3d373e28b283d8891ddcc974e8c55397f"),
     .write = write_array,
     .read = read_array,
 };

@@ -19,6 +19,6 @@ static size_t write_clock(const struct epg_topic *topic, const double *values, e
 
 const epg_message_t epg_message_clock = {
     .type = "rosgraph_msgs::msg::dds_::Clock_",
-    .hash = "RIHS01_692f7a66e93a3c83e71765d033b60349ba68023a8c689a79e48078bcb5c58564",
+    .hash = EPG_TYPE_HASH("RIHS01_692f7a66e93a3c83e71765d033b60349ba68023a8c689a79e48078bcb5c58564"),
     .write = write_clock,
 };

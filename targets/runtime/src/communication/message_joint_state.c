@@ -109,7 +109,7 @@ static bool read_joint_state(const epg_topic_t *topic, const void *data, size_t 
 
 const epg_message_t epg_message_joint_state = {
     .type = "sensor_msgs::msg::dds_::JointState_",
-    .hash = "RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e",
+    .hash = EPG_TYPE_HASH("RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e"),
     .write = write_joint_state,
     .read = read_joint_state,
 };

@@ -61,14 +61,14 @@ static bool read_stamped(const epg_topic_t *topic, const void *data, size_t size
 
 const epg_message_t epg_message_twist = {
     .type = "geometry_msgs::msg::dds_::Twist_",
-    .hash = "RIHS01_9c45bf16fe0983d80e3cfe750d6835843d265a9a6c46bd2e609fcddde6fb8d2a",
+    .hash = EPG_TYPE_HASH("RIHS01_9c45bf16fe0983d80e3cfe750d6835843d265a9a6c46bd2e609fcddde6fb8d2a"),
     .write = write_twist,
     .read = read_twist,
 };
 
 const epg_message_t epg_message_twist_stamped = {
     .type = "geometry_msgs::msg::dds_::TwistStamped_",
-    .hash = "RIHS01_5f0fcd4f81d5d06ad9b4c4c63e3ea51b82d6ae4d0558f1d475229b1121db6f64",
+    .hash = EPG_TYPE_HASH("RIHS01_5f0fcd4f81d5d06ad9b4c4c63e3ea51b82d6ae4d0558f1d475229b1121db6f64"),
     .write = write_stamped,
     .read = read_stamped,
 };

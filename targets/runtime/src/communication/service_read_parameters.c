@@ -90,27 +90,27 @@ static bool write_descriptions(epg_node_t *node, epg_reply_t *reply, size_t part
 
 const epg_service_kind_t epg_service_get_parameters = {
     .request = {.type = "rcl_interfaces::srv::dds_::GetParameters_Request_",
-                .hash = "RIHS01_135a9e1c3d7cebef792f6687d7ddf99949b21a0bd9a320d863a9110a3f5cf4d6"},
+                .hash = EPG_TYPE_HASH("RIHS01_135a9e1c3d7cebef792f6687d7ddf99949b21a0bd9a320d863a9110a3f5cf4d6")},
     .reply = {.type = "rcl_interfaces::srv::dds_::GetParameters_Response_",
-              .hash = "RIHS01_9fa773b46e39cc5d02db6224d8fd520bb9caeeffc2b27c96c1e59431baba9f2a"},
+              .hash = EPG_TYPE_HASH("RIHS01_9fa773b46e39cc5d02db6224d8fd520bb9caeeffc2b27c96c1e59431baba9f2a")},
     .take = take_names,
     .write = write_values,
 };
 
 const epg_service_kind_t epg_service_get_parameter_types = {
     .request = {.type = "rcl_interfaces::srv::dds_::GetParameterTypes_Request_",
-                .hash = "RIHS01_87d7ec5ef545d4daa289d500025d31fb2437bc8b8365ca367161c4dac4be33fd"},
+                .hash = EPG_TYPE_HASH("RIHS01_87d7ec5ef545d4daa289d500025d31fb2437bc8b8365ca367161c4dac4be33fd")},
     .reply = {.type = "rcl_interfaces::srv::dds_::GetParameterTypes_Response_",
-              .hash = "RIHS01_ac1335dce67c478e669434f6ac2fbff34fcd529580f272d3006785ba8b54e47f"},
+              .hash = EPG_TYPE_HASH("RIHS01_ac1335dce67c478e669434f6ac2fbff34fcd529580f272d3006785ba8b54e47f")},
     .take = take_names,
     .write = write_types,
 };
 
 const epg_service_kind_t epg_service_describe_parameters = {
     .request = {.type = "rcl_interfaces::srv::dds_::DescribeParameters_Request_",
-                .hash = "RIHS01_05dd1c2bc87dec2627105c8070d6f9725c781a4f2ab852975bf105462b82b644"},
+                .hash = EPG_TYPE_HASH("RIHS01_05dd1c2bc87dec2627105c8070d6f9725c781a4f2ab852975bf105462b82b644")},
     .reply = {.type = "rcl_interfaces::srv::dds_::DescribeParameters_Response_",
-              .hash = "RIHS01_ad6747319613c6131589e062e095b469a46cc764f7d0f12a001a49e6cd893995"},
+              .hash = EPG_TYPE_HASH("RIHS01_ad6747319613c6131589e062e095b469a46cc764f7d0f12a001a49e6cd893995")},
     .take = take_names,
     .write = write_descriptions,
 };
@@ -208,9 +208,9 @@ static bool write_list(epg_node_t *node, epg_reply_t *reply, size_t part)
 
 const epg_service_kind_t epg_service_list_parameters = {
     .request = {.type = "rcl_interfaces::srv::dds_::ListParameters_Request_",
-                .hash = "RIHS01_a1b0b5d6b967a5b8ac5bc8563c3ea678f349e312a6a4967227c5a96bc5ce38df"},
+                .hash = EPG_TYPE_HASH("RIHS01_a1b0b5d6b967a5b8ac5bc8563c3ea678f349e312a6a4967227c5a96bc5ce38df")},
     .reply = {.type = "rcl_interfaces::srv::dds_::ListParameters_Response_",
-              .hash = "RIHS01_31b937b82de3612426be79f231e386259f97e8dc843e3f2845288b4bfa296bdd"},
+              .hash = EPG_TYPE_HASH("RIHS01_31b937b82de3612426be79f231e386259f97e8dc843e3f2845288b4bfa296bdd")},
     .take = take_list,
     .write = write_list,
 };

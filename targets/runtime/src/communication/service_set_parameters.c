@@ -157,9 +157,9 @@ static bool write_one_result(epg_node_t *node, epg_reply_t *reply, size_t part)
 
 const epg_service_kind_t epg_service_set_parameters = {
     .request = {.type = "rcl_interfaces::srv::dds_::SetParameters_Request_",
-                .hash = "RIHS01_130d46386b7e84ea9ecf60608a4d83cbe5e5cb7c6cc5b712b7a4e3a6c254e932"},
+                .hash = EPG_TYPE_HASH("RIHS01_130d46386b7e84ea9ecf60608a4d83cbe5e5cb7c6cc5b712b7a4e3a6c254e932")},
     .reply = {.type = "rcl_interfaces::srv::dds_::SetParameters_Response_",
-              .hash = "RIHS01_7a0e8140a0b8d98308fa81a5403a766e610af29a239caf54b7553227906fc266"},
+              .hash = EPG_TYPE_HASH("RIHS01_7a0e8140a0b8d98308fa81a5403a766e610af29a239caf54b7553227906fc266")},
     .take = take_values,
     .ready = some_ready,
     .write = write_results,
@@ -167,9 +167,9 @@ const epg_service_kind_t epg_service_set_parameters = {
 
 const epg_service_kind_t epg_service_set_parameters_atomically = {
     .request = {.type = "rcl_interfaces::srv::dds_::SetParametersAtomically_Request_",
-                .hash = "RIHS01_db0bd950ed5ed867a0e90b225e44dea382d762c0762ff3e0ee842190042a59e5"},
+                .hash = EPG_TYPE_HASH("RIHS01_db0bd950ed5ed867a0e90b225e44dea382d762c0762ff3e0ee842190042a59e5")},
     .reply = {.type = "rcl_interfaces::srv::dds_::SetParametersAtomically_Response_",
-              .hash = "RIHS01_31b1a38c5b0b9d893ee24da45f69638f4561c78461d82d52750f429b534502b8"},
+              .hash = EPG_TYPE_HASH("RIHS01_31b1a38c5b0b9d893ee24da45f69638f4561c78461d82d52750f429b534502b8")},
     .take = take_values,
     .ready = all_ready,
     .write = write_one_result,

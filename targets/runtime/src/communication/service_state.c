@@ -15,15 +15,11 @@
 #include "reply.h"
 
 #define TRIGGER_REQUEST                                                                                                \
-    {                                                                                                                  \
-        .type = "std_srvs::srv::dds_::Trigger_Request_",                                                               \
-        .hash = "RIHS01_d010825374ce8918e72bfd826c82603e60f45419e932ea976f807b74a863a199"                              \
-    }
+    {.type = "std_srvs::srv::dds_::Trigger_Request_",                                                                  \
+     .hash = EPG_TYPE_HASH("RIHS01_d010825374ce8918e72bfd826c82603e60f45419e932ea976f807b74a863a199")}
 #define TRIGGER_REPLY                                                                                                  \
-    {                                                                                                                  \
-        .type = "std_srvs::srv::dds_::Trigger_Response_",                                                              \
-        .hash = "RIHS01_2d946c21e2fc3f1e9ca6986a8191d85fcc70097a8bb7771a053564bc47009cdf"                              \
-    }
+    {.type = "std_srvs::srv::dds_::Trigger_Response_",                                                                 \
+     .hash = EPG_TYPE_HASH("RIHS01_2d946c21e2fc3f1e9ca6986a8191d85fcc70097a8bb7771a053564bc47009cdf")}
 
 /** Begins to count control cycles. */
 static void begin(epg_node_t *node)
@@ -129,9 +125,9 @@ static bool enable_ready(epg_node_t *node, bool late)
 
 const epg_service_kind_t epg_service_enable = {
     .request = {.type = "std_srvs::srv::dds_::SetBool_Request_",
-                .hash = "RIHS01_c62fbb99d94e1b25e8ef9e109f9581956bb1b3361a45a4e5810c36a90d29932e"},
+                .hash = EPG_TYPE_HASH("RIHS01_c62fbb99d94e1b25e8ef9e109f9581956bb1b3361a45a4e5810c36a90d29932e")},
     .reply = {.type = "std_srvs::srv::dds_::SetBool_Response_",
-              .hash = "RIHS01_d0814e7f7b4880ab77e9c57426c7aa1562ab69f11eef8e2e968812f9cbd0b059"},
+              .hash = EPG_TYPE_HASH("RIHS01_d0814e7f7b4880ab77e9c57426c7aa1562ab69f11eef8e2e968812f9cbd0b059")},
     .take = take_enable,
     .ready = enable_ready,
     .write = write_result,

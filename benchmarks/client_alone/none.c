@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/**
+ * @file
+ * No communication.
+ */
+#include "handwritten.h"
+
+void communicate(void)
+{
+}
