@@ -143,7 +143,7 @@ static bool create_entities(void)
 static bool connect(void)
 {
     uxr_set_custom_transport_callbacks(&transport, true, open_or_close, open_or_close, write_bytes, read_bytes);
-    if (!uxr_init_custom_transport(&transport, NULL) || !uxr_ping_agent(&transport.comm, PONG_MS)) {
+    if (!uxr_init_custom_transport(&transport, NULL)) {
         return false;
     }
     uxr_init_session(&session, &transport.comm, 0x4A495759);

@@ -207,6 +207,9 @@ function(_epg_rp2_executable executable name)
   if(clk_sys)
     target_compile_definitions(${executable} PRIVATE SYS_CLK_HZ=${clk_sys})
   endif()
+  # These executables have no stdio, so panic() stops without a text.  Its text would need the C library's streams and
+  # heap: 9 kB.
+  target_compile_definitions(${executable} PRIVATE PICO_PANIC_FUNCTION=)
   pico_set_binary_type(${executable} copy_to_ram)
   pico_enable_stdio_uart(${executable} 0)
   pico_enable_stdio_usb(${executable} 0)

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Measures the text of JIWY's images on a Pico: by part of the program, and beside eProsima's client without EPG.
+
+The programs written by hand have EPG's model and encoders.  One has no communication, one the SDK's serial port on USB,
+and one is a node of an XRCE agent by eProsima's client alone: ``client_alone``.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections import Counter
+from pathlib import Path
+
+from measure import ROOT
+from report import Table, arguments, command_line, show
+
+sys.path.insert(0, str(ROOT))
+
+from tests.emulator.build import build
+from tests.emulator.emulator import Emulator
+from tests.emulator.toolchain import Missing, arm_gcc, node, pico_sdk, rp2040js, tool
+from tests.platforms.pico.images import images, size_of
+from tests.platforms.pico.xrce.agent import BoardAgent
+
+MIDDLEWARES = {
+    "none": "none",
+    "xrce_topics": "xrce, topics only",
+    "xrce": "xrce",
+    "console": "console",
+    "xrce_console": "xrce and console",
+}
+HANDWRITTEN = {
+    "none": "by hand, no communication",
+    "serial": "by hand, a serial port on USB",
+    "client": "by hand, eProsima's client",
+}
+OTHERS = (
+    ("published: Micro XRCE-DDS client, publisher and subscriber [1]", "less than 75,000", "about 3,000"),
+    ("noted earlier: rclc with libmicroros, publisher and subscriber [2]", "66,700", "17,200 and a heap"),
+)
+PARTS = (
+    ("eProsima's client", r"libepg_micro_xrce_dds_client\.a"),
+    ("middleware xrce", r"libepg_middleware_xrce\.a"),
+    ("console", r"libepg_middleware_console\.a"),
+    ("services and parameters", r"libepg_communication\w*\.a\((service|parameter_|reply|message_parameter)"),
+    ("diagnostics", r"libepg_communication\w*\.a\(diagnostics"),
+    ("stored values", r"libepg_communication\w*\.a\(store|mcu/src/store\.c|families/rp2/src/flash\.c|/hardware_flash/"),
+    ("other communication", r"libepg_communication\w*\.a"),
+    ("USB device", r"/tinyusb/|/usb/"),
+    ("generated code and tables", r"libjiwy\w*\.a\(jiwy_(?!model)"),
+    ("model", r"libjiwy_model\w*\.a|libjiwy\w*\.a\(jiwy_model"),
+    ("control", r"libepg_runtime\w*\.a"),
+    ("C library, arithmetic", r"lib(g|c|gcc|m)\.a|pico_(double|float|divider|int64_ops)/"),
+    ("port layer, SDK", r""),
+)
+"""Parts of an image: a file of the linker's map belongs to the first part whose expression is found in its path."""
+NO_TEXT = (".bss", "COMMON", ".stack", ".heap", ".uninit", ".scratch", ".debug", ".comment", ".ARM")
+
+
+def main() -> None:
+    options = arguments(__doc__)
+    try:
+        for need in (pico_sdk, arm_gcc, node, rp2040js):
+            need()
+        client = {"CLIENT": str(tool("micro_xrce_dds_client")), "CDR": str(tool("micro_cdr"))}
+    except Missing as missing:
+        raise SystemExit(str(missing)) from None
+    ours = {name: images("pico", "bare_metal", "jiwy_firmware", middleware=name) for name in MIDDLEWARES}
+    by_hand = build("benchmarks/client_alone", variables=client)
+    check_that_it_publishes(by_hand / "by_hand_client.elf")
+    tables = [
+        part_table({name: folder / "jiwy_firmware.elf" for name, folder in ours.items()}),
+        comparison(
+            {MIDDLEWARES[name]: folder / "jiwy_firmware.elf" for name, folder in ours.items()},
+            {title: by_hand / f"by_hand_{name}.elf" for name, title in HANDWRITTEN.items()},
+        ),
+    ]
+    show("pico_text", tables, options.write, command_line("pico_text"))
+
+
+def check_that_it_publishes(elf: Path) -> None:
+    """The program written by hand is a node, too: it connects to an agent, and its positions arrive."""
+    with Emulator(elf, usb={"seed": 3, "open": False}) as pico:
+        pico.run(milliseconds=300)  # until the host has configured the device
+        with BoardAgent(pico) as agent:
+            agent.wait_for("rt/pan_publisher", milliseconds=4000)
+            agent.wait_for("rt/tilt_publisher")
+
+
+def parts_of(elf: Path) -> Counter[str]:
+    """Bytes of text of each part, from the linker's map beside ``elf``."""
+    text = Path(f"{elf}.map").read_text(encoding="utf-8")
+    text = text[text.index("Linker script and memory map") :]
+    text = re.sub(r"^( \S+)\n +", r"\1 ", text, flags=re.MULTILINE)  # a long name has a line for itself
+    found: Counter[str] = Counter()
+    for section, size, file in re.findall(r"^ (\.?\w\S*) +0x0*[12]\w{7} +0x(\w+) (\S+)$", text, re.MULTILINE):
+        if not section.startswith(NO_TEXT):
+            found[next(part for part, pattern in PARTS if re.search(pattern, file))] += int(size, 16)
+    found["fill and tables of the linker"] = size_of(elf).text - sum(found.values())
+    return found
+
+
+def part_table(elves: dict[str, Path]) -> Table:
+    columns = [parts_of(elf) for elf in elves.values()]
+    names = [*(part for part, _ in PARTS), "fill and tables of the linker"]
+    rows = [[name, *(str(column[name]) for column in columns)] for name in names]
+    totals = [sum(column.values()) for column in columns]
+    rows.append(["all", *map(str, totals)])
+    rows.append(["beyond none", *(str(total - totals[0]) for total in totals)])
+    of = dict(zip(elves, totals, strict=True))
+    xrce, console = of["xrce"] - of["none"], of["xrce_console"] - of["xrce"]
+    notes = [
+        f"Aims: xrce at most 27,000 bytes beyond none: {verdict(xrce, 27_000)}; "
+        f"the console at most 20,000 bytes beyond xrce: {verdict(console, 20_000)}.",
+        "Topics only: `parameters: false`, `diagnostics: 0 s`. Bytes of code, constants and initial values in the "
+        "linker's map, bare metal.",
+    ]
+    return Table("Text of JIWY's images on a Pico by part", ["part", *map(MIDDLEWARES.__getitem__, elves)], rows, notes)
+
+
+def verdict(size: int, aim: int) -> str:
+    return f"holds ({size:,})" if size <= aim else f"missed by {size - aim:,} ({size:,})"
+
+
+def comparison(ours: dict[str, Path], by_hand: dict[str, Path]) -> Table:
+    rows = []
+    for group, programs in (("EPG, ", ours), ("", by_hand)):
+        sizes = {title: size_of(elf) for title, elf in programs.items()}
+        least = next(iter(sizes.values()))  # the first program of a group has no communication
+        for title, size in sizes.items():
+            beyond = [f"{size.text - least.text:,}", f"{size.data + size.bss - least.data - least.bss:,}"]
+            rows.append([group + title, f"{size.text:,}", f"{size.data + size.bss:,}", *beyond])
+    rows += [[title, "", "", text, ram] for title, text, ram in OTHERS]
+    head = ["program", "text", "data and bss", "text beyond none", "data and bss beyond none"]
+    notes = [
+        "Same board, model and encoders, both axes. The program with eProsima's client has JIWY's four topics of "
+        "values, and waits for each answer of the agent. It has none of these: the topic and the services that enable "
+        "and reset, time stamps, checks of received frames. EPG's USB device also reboots the board for picotool.",
+        "[1] <https://micro.ros.org/docs/concepts/middleware/Micro_XRCE-DDS/>: flash and RAM of the whole application. "
+        "micro-ROS publishes the RAM of rclc "
+        "(<https://micro.ros.org/docs/concepts/benchmarking/memo_prof/>), but not its text.",
+        "[2] A note of this project: Cortex-M0+, -Os. The program and the library are not kept, so this command cannot "
+        "repeat it. EPG does not build libmicroros.",
+    ]
+    return Table("Text of JIWY beside other programs, bytes", head, rows, notes)
+
+
+if __name__ == "__main__":
+    main()
