@@ -55,6 +55,8 @@ PARTS = (
     ("port layer, SDK", r""),
 )
 """Parts of an image: a file of the linker's map belongs to the first part whose expression is found in its path."""
+REST = "heap, stack and fill"
+"""The program `size` counts the SDK's sections for heap and stack as text."""
 NO_TEXT = (".bss", "COMMON", ".stack", ".heap", ".uninit", ".scratch", ".debug", ".comment", ".ARM")
 
 
@@ -97,13 +99,13 @@ def parts_of(elf: Path) -> Counter[str]:
     for section, size, file in re.findall(r"^ (\.?\w\S*) +0x0*[12]\w{7} +0x(\w+) (\S+)$", text, re.MULTILINE):
         if not section.startswith(NO_TEXT):
             found[next(part for part, pattern in PARTS if re.search(pattern, file))] += int(size, 16)
-    found["fill and tables of the linker"] = size_of(elf).text - sum(found.values())
+    found[REST] = size_of(elf).text - sum(found.values())
     return found
 
 
 def part_table(elves: dict[str, Path]) -> Table:
     columns = [parts_of(elf) for elf in elves.values()]
-    names = [*(part for part, _ in PARTS), "fill and tables of the linker"]
+    names = [*(part for part, _ in PARTS), REST]
     rows = [[name, *(str(column[name]) for column in columns)] for name in names]
     totals = [sum(column.values()) for column in columns]
     rows.append(["all", *map(str, totals)])

@@ -31,6 +31,7 @@ SMALLEST = {
     "stm32_cycle": ["--cycles", "50"],
     "pico_closed_loop": ["--short", "1"],
     "pico_communication": ["--targets", "1"],
+    "pico_text": [],
     "setpoint_latency": ["--steps", "20", "--platforms", "1"],
     "teleoperation": ["--seeds", "1"],
     "pico_ping_pong": ["--pings", "5", "--flat", "20", "--platforms", "1", "--combinations", "1"],
@@ -68,7 +69,7 @@ def test_it_runs_and_prints_what_the_page_shows(program: str) -> None:
     if program in ("network_situations", "ping_pong"):
         pytest.importorskip("cyclonedds", reason="CycloneDDS for Python is not installed: pip install cyclonedds")
         skip_if_missing(lambda: tool("cyclonedds"))
-    if program in ("xrce_round_trip", "pico_ping_pong", "setpoint_latency", "teleoperation"):
+    if program in ("xrce_round_trip", "pico_ping_pong", "setpoint_latency", "teleoperation", "pico_text"):
         skip_if_missing(lambda: tool("micro_xrce_dds_client"), lambda: tool("micro_cdr"))
     printed = run(program)
     titles = re.findall(r"^(.+)\n-+$", printed, flags=re.MULTILINE)

@@ -93,8 +93,8 @@ function(_epg_rp2_check_executables name usb directory)
     if("${name}" IN_LIST libraries OR "EPG::${name}" IN_LIST libraries)
       if(usb)
         _epg_rp2_check_stdio("${name}" "${target}" "${libraries}")
-        _epg_rp2_small_usb("${target}")
       endif()
+      _epg_rp2_small_sources("${target}")
       get_target_property(definitions ${target} COMPILE_DEFINITIONS)
       list(FILTER definitions INCLUDE REGEX "^(-D)?PICO_NO_RAM_VECTOR_TABLE(=1)?$")
       if(definitions)
@@ -188,15 +188,20 @@ function(_epg_rp2_usb_library)
   target_link_libraries(epg_pico_usb INTERFACE tinyusb_device_unmarked pico_usb_reset_interface_headers)
 endfunction()
 
-# Compiles the USB device in <executable> for size, as the libraries of the communication side.
-function(_epg_rp2_small_usb executable)
-  _epg_mcu_small_options(options)
+# Compiles the communication side's sources in <executable> for size, as its libraries: the USB device, the store, and
+# the SDK's text of the serial number.
+function(_epg_rp2_small_sources executable)
+  set(folder "${CMAKE_CURRENT_FUNCTION_LIST_DIR}")
+  set(sources "${folder}/src/flash.c" "${folder}/../../platforms/mcu/src/store.c"
+    "${PICO_SDK_PATH}/src/rp2_common/pico_unique_id/unique_id.c")
   foreach(library epg_pico_usb tinyusb_device_base tinyusb_common_base)
     if(TARGET ${library})
-      get_target_property(sources ${library} INTERFACE_SOURCES)
-      set_property(SOURCE ${sources} TARGET_DIRECTORY ${executable} APPEND PROPERTY COMPILE_OPTIONS ${options})
+      get_target_property(of_library ${library} INTERFACE_SOURCES)
+      list(APPEND sources ${of_library})
     endif()
   endforeach()
+  _epg_mcu_small_options(options)
+  set_property(SOURCE ${sources} TARGET_DIRECTORY ${executable} APPEND PROPERTY COMPILE_OPTIONS ${options})
 endfunction()
 
 # Makes an <executable> with EPG's main() run from RAM, and adds its output files for flashing (.uf2, .hex, .bin).  The

@@ -22,7 +22,7 @@ function(_epg_middleware_xrce library)
   set(core "${micro_xrce_dds_client}/src/c/core")
   add_library(epg_micro_xrce_dds_client STATIC EXCLUDE_FROM_ALL
     "${micro_cdr}/src/c/common.c"
-    ${types}/array.c ${types}/sequence.c ${types}/string.c "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/cdr_basic.c"
+    ${types}/array.c ${types}/sequence.c ${types}/string.c "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/micro_cdr/basic.c"
     ${core}/session/stream/input_best_effort_stream.c ${core}/session/stream/input_reliable_stream.c
     ${core}/session/stream/output_best_effort_stream.c ${core}/session/stream/output_reliable_stream.c
     ${core}/session/stream/stream_storage.c ${core}/session/stream/stream_id.c ${core}/session/stream/seq_num.c
@@ -33,7 +33,6 @@ function(_epg_middleware_xrce library)
     "${micro_xrce_dds_client}/src/c/util/ping.c")
   target_include_directories(epg_micro_xrce_dds_client SYSTEM PUBLIC
     "${headers}" "${micro_cdr}/include" "${micro_xrce_dds_client}/include")
-  target_include_directories(epg_micro_xrce_dds_client PRIVATE "${micro_cdr}/src/c") # for cdr_basic.c
   set_target_properties(epg_micro_xrce_dds_client PROPERTIES C_STANDARD 99 C_STANDARD_REQUIRED ON)
   if(CMAKE_C_COMPILER_ID MATCHES "GNU|Clang")
     target_compile_options(epg_micro_xrce_dds_client PRIVATE -w -ffunction-sections -fdata-sections

@@ -31,6 +31,6 @@ def test_the_functions_for_numbers_are_those_of_micro_cdr(tmp_path: Path) -> Non
     skip_if_missing(lambda: tool("micro_cdr"))
     cdr = tool("micro_cdr")
     theirs = trace(tmp_path / "theirs", cdr, cdr / "src" / "c" / "types" / "basic.c")
-    ours = trace(tmp_path / "ours", cdr, ROOT / "targets" / "middlewares" / "xrce" / "cdr_basic.c")
+    ours = trace(tmp_path / "ours", cdr, ROOT / "targets" / "middlewares" / "xrce" / "micro_cdr" / "basic.c")
     assert len(ours) > 10_000
     assert ours == theirs

@@ -7,7 +7,10 @@
  * The client needs 20 of them, 2.9 kB for a Cortex-M0+.  These functions share one loop over the bytes of a value.  They
  * give the same results.
  */
-#include "common_internal.h"
+#include <ucdr/microcdr.h>
+
+/** Micro-CDR's src/c/common_internal.h declares it: false if the buffer is full and no other one takes its place. */
+bool ucdr_check_final_buffer_behavior(ucdrBuffer *buffer, size_t bytes);
 
 /** Aligns the buffer for a value of `size` bytes. */
 static void align(ucdrBuffer *buffer, size_t size)
