@@ -30,7 +30,6 @@ static uxrCustomTransport transport;
 static uxrSession session;
 static uint8_t output_best_effort[MTU], output_reliable[MTU * HISTORY], input_reliable[MTU * HISTORY];
 static uxrStreamId reliable, best_effort, arriving;
-static double received[AXES];
 
 /* Functions that the client calls ------------------------------------------------------------------------------ */
 
@@ -66,14 +65,15 @@ static size_t read_bytes(uxrCustomTransport *of, uint8_t *bytes, size_t size, in
     (void)error;
     const absolute_time_t end = make_timeout_time_ms((uint32_t)timeout);
     size_t count = 0;
-    while (count == 0 && !time_reached(end)) {
+    do {
+        control_alive();
         for (int byte = getchar_timeout_us(0); byte >= 0; byte = getchar_timeout_us(0)) {
             bytes[count++] = (uint8_t)byte;
             if (count == size) {
                 break;
             }
         }
-    }
+    } while (count == 0 && !time_reached(end));
     return count;
 }
 
@@ -87,8 +87,7 @@ static void on_sample(uxrSession *of, uxrObjectId object, uint16_t request, uxrS
     (void)length;
     (void)context;
     if (ucdr_deserialize_double(data, &value)) {
-        received[object.id == 2 ? PAN : TILT] = value;
-        control_setpoints(received);
+        control_setpoint(object.id == 2 ? PAN : TILT, value);
     }
 }
 
@@ -162,13 +161,16 @@ static bool connect(void)
 
 static void publish(void)
 {
-    double values[AXES];
-    control_positions(values);
+    static const uint8_t places[AXES] = {LOGGING_PAN, LOGGING_TILT};
+    report_t report = {0};
+    if (!control_report(&report)) {
+        return;
+    }
     for (uint16_t axis = 0; axis < AXES; axis++) {
         ucdrBuffer out;
         if (uxr_prepare_output_stream(&session, best_effort, uxr_object_id((uint16_t)(2 * axis + 1), UXR_DATAWRITER_ID),
                                       &out, sizeof(double)) != UXR_INVALID_REQUEST_ID) {
-            (void)ucdr_serialize_double(&out, values[axis]);
+            (void)ucdr_serialize_double(&out, report.outputs[places[axis]]);
         }
     }
 }
@@ -177,6 +179,7 @@ void communicate(void)
 {
     static bool connected;
     static int64_t publish_ms, ping_ms;
+    control_alive();
     if (!connected) {
         connected = connect();
         return;

@@ -7,4 +7,5 @@
 
 void communicate(void)
 {
+    control_alive();
 }

@@ -8,6 +8,7 @@
 
 void communicate(void)
 {
+    control_alive();
     const int byte = getchar_timeout_us(0);
     if (byte >= 0) {
         putchar_raw(byte);
