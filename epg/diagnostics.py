@@ -11,9 +11,10 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, TypeVar
 
+from epg.dataclass import dataclass
 from epg.source import Span
 
 Result = TypeVar("Result")

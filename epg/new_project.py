@@ -12,7 +12,7 @@ import os
 import re
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import epg
@@ -25,6 +25,7 @@ from epg.check.middleware import first_middleware, needs_component, offered, uno
 from epg.check.names import identifier_problem, project_folder_problem
 from epg.check.target_names import check_name, check_sdk_headers
 from epg.data import data_folder, targets_roots
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.documents.tcf import predefined_tcf_names
 from epg.emit.bindings import new_bindings

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 import epg
 from epg.data import data_folder
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.emit.folder import write_folder
 from epg.emit.project_files import SYSTEM, MovedAxis, SystemPlan, project_files, project_folder

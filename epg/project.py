@@ -9,7 +9,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +22,7 @@ from epg.check.simulated import simulated_part
 from epg.check.target_names import check_driver_headers, check_name, check_paths, check_sdk_headers
 from epg.check.topic_ends import TopicEnd, bind_ends, tcf_of_ends
 from epg.data import targets_roots
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.documents.cmake_call import caller_span, setting_span
 from epg.documents.ioc_file import read_ioc

@@ -9,9 +9,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from types import MappingProxyType
 from typing import Any, Union
+
+from epg.dataclass import dataclass
 
 Scalar = Union[None, bool, int, float, str]
 Path = tuple[Union[str, int], ...]

@@ -9,10 +9,11 @@ no frequency at all.  Then a claim that needs it is an error (:mod:`epg.resolve.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from types import MappingProxyType
 
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.documents.items import map_of, text_of
 from epg.documents.schema import extended_from, quantity_of

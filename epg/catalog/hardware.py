@@ -15,7 +15,7 @@ A chip with another relation needs new Python code in :mod:`epg.resolve`.  Any o
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
@@ -23,6 +23,7 @@ from types import MappingProxyType
 from epg.catalog.clocks import Clock, make_clocks
 from epg.catalog.layout import Layout, make_layout
 from epg.catalog.platform import Platform
+from epg.dataclass import dataclass
 from epg.documents.items import flag_of, integer_range, map_of, pin_names, text_of, texts_of, values_of
 from epg.source import Span, YamlNode
 

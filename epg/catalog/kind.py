@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 from zlib import crc32
 
+from epg.dataclass import dataclass
 from epg.documents.items import flag_of, map_of, text_map_of, text_of, texts_of, values_of
 from epg.source import Span, YamlNode
 

@@ -7,9 +7,9 @@ A board without such data gets rows that are made of the names of its pins, and 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 
+from epg.dataclass import dataclass
 from epg.documents.items import flag_of, map_of, text_of, texts_of, values_of
 from epg.source import YamlNode
 

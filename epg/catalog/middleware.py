@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
 from epg.catalog.kind import TEMPLATE, KindParameter, make_parameters
+from epg.dataclass import dataclass
 from epg.documents.items import flag_of, map_of, text_of, texts_of
 from epg.source import Span, YamlNode
 

@@ -9,11 +9,12 @@ contain it and name the platform (``by_family``).
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from epg.dataclass import dataclass
 from epg.documents.items import flag_of, map_of, text_of, texts_of, values_of
 from epg.source import Span, YamlNode
 

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from types import MappingProxyType
 
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.documents.items import text_of
 from epg.documents.schema import load_schema, validate

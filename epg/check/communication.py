@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -12,6 +11,7 @@ from epg.catalog.catalog import Catalog, Target
 from epg.catalog.middleware import Middleware
 from epg.check.compose import communication_schema, console_schema, typed_options
 from epg.check.middleware import check_lack, check_offer, needs_component, offered, unoffered_hint
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.schema import extended_from, validate
 from epg.quantity import QuantityError, parse_quantity

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from types import MappingProxyType
@@ -22,6 +22,7 @@ from epg.check.names import identifier_problem, normal_namespace
 from epg.check.other_code import NO_OTHER_CODE, OtherCode, check_other_code
 from epg.check.topics import Use, check_names, check_quality
 from epg.check.uses import Used, used_components
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.documents.ioc_file import Ioc
 from epg.documents.items import map_of

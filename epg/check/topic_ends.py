@@ -8,12 +8,13 @@ component with its own name.  The topics of all ends come from the system's file
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from types import MappingProxyType
 
 from epg.catalog.catalog import Catalog
 from epg.check.bindings import Binding, Bindings, Conversion
 from epg.check.configuration import Component, Configuration
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.models.model import Model
 from epg.source import Scalar, Span, YamlNode

@@ -12,7 +12,7 @@ import os
 import platform
 import sys
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from importlib import metadata
 from pathlib import Path
 
@@ -21,6 +21,7 @@ from epg import bootstrap
 from epg.cli.arguments import user_roots
 from epg.cli.report import to_json
 from epg.data import targets_roots
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.tools.find_tool import Finding, Surroundings, find_tool, read_cmake_cache
 from epg.tools.remedy import command_for, package_manager, privileged

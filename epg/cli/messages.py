@@ -11,10 +11,10 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from functools import cache
 
 from epg.data import data_folder
+from epg.dataclass import dataclass
 
 PAGE = "errors.md"
 _HEADING = re.compile(r"^### (\S+)\n", re.MULTILINE)

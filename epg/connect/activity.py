@@ -11,12 +11,13 @@ import re
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any, ClassVar
 
 from epg.connect.build.messages import Message, Messages, plain
 from epg.connect.build.process import Process
+from epg.dataclass import dataclass
 from epg.diagnostics import UserError
 
 KEPT = 20_000

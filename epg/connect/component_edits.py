@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 
 from epg.catalog.catalog import Catalog
@@ -19,6 +19,7 @@ from epg.connect.body import Refused
 from epg.connect.draft import Change, Operation, RemoveValue, RenameKey, SetEnds, SetParameter, SetValue
 from epg.connect.forms import PARAMETERS, Data, field_at, parameter_path, value_of
 from epg.connect.loaded import Loaded
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.edit.bindings import End, ends_of
 from epg.project import Request, load_configuration

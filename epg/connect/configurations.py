@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -19,6 +18,7 @@ from epg.catalog.catalog import Catalog, Target, load_catalog
 from epg.check.communication import tools_for
 from epg.check.configuration import Configuration
 from epg.check.middleware import first_middleware
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.documents.tcf import load_tcf_chain, predefined_tcf_names
 from epg.emit.project_files import project_folder

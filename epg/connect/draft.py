@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 
 from epg.connect.files import Snapshot
+from epg.dataclass import dataclass
 from epg.edit.bindings import CannotEdit, End, set_ends
 from epg.edit.tcf import Value, remove_value, rename_key, set_value
 from epg.models.model import Model

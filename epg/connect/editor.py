@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +24,7 @@ from epg.connect.project_files import FileChange, file_changes
 from epg.connect.projects import Job, find_jobs
 from epg.connect.unused import unused_parts
 from epg.connect.view import view_of
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.documents.yaml_file import parse_yaml
 from epg.edit.bindings import CannotEdit

@@ -10,9 +10,9 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
 
+from epg.dataclass import dataclass
 from epg.documents.text_file import MAX_BYTES
 from epg.emit.leftovers import replace_file
 

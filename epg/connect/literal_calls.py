@@ -11,9 +11,10 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
+from epg.dataclass import dataclass
 from epg.source import Span
 
 FILE = "CMakeLists.txt"

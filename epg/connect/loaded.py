@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
@@ -18,6 +18,7 @@ from epg.check.merge import apply_settings, merge_chain
 from epg.check.topic_ends import is_made_for
 from epg.connect.files import Watch
 from epg.connect.places import Places
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostic, Diagnostics
 from epg.documents.tcf import TcfFile, find_tcf, load_tcf_chain, settings_node
 from epg.documents.text_file import read_text

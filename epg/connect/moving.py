@@ -12,7 +12,7 @@ that the new target does not have is dropped.  The user must correct the errors 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,7 @@ from epg.check.configuration import Configuration
 from epg.check.middleware import first_middleware, offered
 from epg.connect.draft import RemoveValue, SetValue
 from epg.connect.loaded import Loaded, Models, load
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostic, Diagnostics
 from epg.edit.tcf import COMPONENTS, remove_value, set_value
 from epg.project import Request, load_configuration

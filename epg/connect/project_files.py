@@ -13,12 +13,12 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from epg.connect.files import read_snapshot
 from epg.connect.projects import Job
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.new_project import ProjectRequest, new_project
 

@@ -9,13 +9,13 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
 from epg.connect.build_folders import build_folders
 from epg.connect.literal_calls import FILE, Call, LiteralCalls, Unknown, Word, not_literal
 from epg.connect.recorded_calls import recorded_calls
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.project import Request
 from epg.source import Span

@@ -7,10 +7,11 @@ A line of the record is the name of a function, or a tab and one of its argument
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
 from epg.connect.build_folders import BuildFolder
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.documents.text_file import is_file, read_text
 from epg.project import Request, request_of_options

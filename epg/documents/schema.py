@@ -27,6 +27,7 @@ from typing import Any
 
 from epg.data import data_folder
 from epg.diagnostics import Diagnostics, Note, did_you_mean
+from epg.documents.accept import accepts
 from epg.quantity import QuantityError, number_hint, parse_quantity, parse_ratio
 from epg.source import Path, Span, YamlNode
 
@@ -55,10 +56,13 @@ def validate(node: YamlNode, schema: Mapping[str, Any], diagnostics: Diagnostics
     ``partial`` is for a file that extends another one: missing keys are not reported, and every value may be ``null``,
     which deletes its key.
     """
-    from jsonschema import Draft202012Validator  # commands that read no document save the time of this import
+    plain = node.plain()
+    if accepts(plain, schema, partial=partial):
+        return True
+    from jsonschema import Draft202012Validator
 
     good = True
-    errors = Draft202012Validator(schema).iter_errors(node.plain())
+    errors = Draft202012Validator(schema).iter_errors(plain)
     for error in sorted(errors, key=lambda e: ([str(step) for step in e.absolute_path], str(e.validator))):
         if partial and (error.validator in ("required", "dependentRequired") or error.instance is None):
             continue

@@ -11,10 +11,10 @@ from __future__ import annotations
 import bisect
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.documents.text_file import ANOTHER_FILE, too_large
 from epg.source import Span

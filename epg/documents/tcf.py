@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.text_file import NO_DRAFTS, Drafts, is_file, read_text
 from epg.documents.yaml_file import MAX_DEPTH, parse_yaml

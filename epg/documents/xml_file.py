@@ -6,10 +6,11 @@ Document type declarations are refused.  Thus a file cannot define entities that
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from xml.parsers import expat
 
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.source_file import decode, read_bytes
 from epg.documents.text_file import one_line

@@ -9,7 +9,7 @@ limit of the depth that is checked before any recursion, and an error for anchor
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
@@ -17,6 +17,7 @@ from typing import cast
 
 import yaml
 
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.text_file import NO_DRAFTS, Drafts, read_text
 from epg.documents.yaml_mistakes import LINE_END, find_mistake, foreign_comment, missing_colon

@@ -14,7 +14,8 @@ from __future__ import annotations
 import itertools
 import re
 from collections import Counter
-from dataclasses import dataclass
+
+from epg.dataclass import dataclass
 
 LINE_END = re.compile("\r\n|\r|\n|\x85|\u2028|\u2029")
 _ENTRY = re.compile(r"""(?P<key>"(?:[^"\\]|\\.)*"|'[^']*'|[^\s'"{\[#](?:(?! \#).)*?)\s*:(?:\s+(?P<value>.*)|$)""")

@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 from epg.check.bindings import UNCONNECTED
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.documents.yaml_file import parse_yaml
 from epg.edit.scalars import scalar_text

@@ -11,11 +11,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from itertools import takewhile
 
 import yaml
 
+from epg.dataclass import dataclass
 from epg.edit import yaml_edit
 from epg.edit.scalars import scalar_text
 

@@ -12,8 +12,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
+from epg.dataclass import dataclass
 from epg.emit.service import ParameterView, parameter_views
 from epg.emit.text import Code, double, identifier
 from epg.quantity import normal_unit

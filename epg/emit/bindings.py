@@ -7,8 +7,8 @@ An update changes only the lines of ports that the model gained or lost.  All ot
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.documents.schema import load_schema, validate
 from epg.documents.yaml_file import parse_yaml

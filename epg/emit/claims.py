@@ -8,9 +8,10 @@ only their numbers.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 
+from epg.dataclass import dataclass
 from epg.resolve.allocation import Assignment
 from epg.resolve.application import Application
 from epg.resolve.claims import TICK

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from epg.catalog.kind import Kind
 from epg.catalog.middleware import Middleware
 from epg.check.communication import tools_for
 from epg.data import data_folder
+from epg.dataclass import dataclass
 from epg.emit.model import ModelBuild
 from epg.emit.text import cmake
 from epg.models.folders import searched_folders

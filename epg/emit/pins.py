@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
+from epg.dataclass import dataclass
 from epg.emit.claims import PinView, claims_of
 from epg.emit.macros import Macros
 from epg.emit.text import Code

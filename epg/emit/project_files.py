@@ -8,11 +8,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
 from epg.catalog.hardware import Target
+from epg.dataclass import dataclass
 from epg.emit.template import environment
 from epg.emit.text import ProjectText
 from epg.install import ACTIVATE, install_command

@@ -7,8 +7,8 @@ A middleware serves them if its ``uses`` names ``services``.  Other middlewares 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+from epg.dataclass import dataclass
 from epg.emit.text import Code
 from epg.resolve.application import Application
 from epg.resolve.parameter_sizes import names_size, request_size

@@ -12,10 +12,10 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
 from epg.catalog.middleware import Middleware
 from epg.check.names import absolute_topic, ros_parameter_name
+from epg.dataclass import dataclass
 from epg.emit.text import Code, double, identifier
 from epg.emit.topics import Macro
 from epg.resolve.application import Application, ResolvedComponent

@@ -9,8 +9,8 @@ functions of the message.  A kind without these macros has the message std_msgs/
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 
+from epg.dataclass import dataclass
 from epg.emit.text import Code
 from epg.resolve.application import Application, ResolvedComponent, Topic
 from epg.resolve.parameter_sizes import event_size

@@ -8,8 +8,8 @@ port are below, with the components that they use.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+from epg.dataclass import dataclass
 from epg.emit.topics import Topics
 from epg.graph.svg import Picture, width
 from epg.graph.wiring import wire_texts

@@ -6,9 +6,9 @@ The boxes are in the order of time.  Their widths do not show durations, because
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 
+from epg.dataclass import dataclass
 from epg.graph.svg import Picture, width
 from epg.quantity import show
 from epg.resolve.application import Application, ResolvedComponent, Topic, Wire

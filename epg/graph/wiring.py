@@ -12,12 +12,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from epg.catalog.hardware import Target
 from epg.catalog.kind import Kind
 from epg.catalog.layout import Contact, Layout
 from epg.check.configuration import Component
+from epg.dataclass import dataclass
 from epg.graph.svg import WIRES, Picture, width
 from epg.resolve.allocation import Assignment
 from epg.resolve.claims import ClaimKey

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import math
 import struct
-from dataclasses import dataclass
 from typing import Union
 
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.messages.definition import Field, Message
 from epg.source import Span

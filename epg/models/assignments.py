@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeGuard
 
+from epg.dataclass import dataclass
 from epg.documents.source_file import STRING, SourceFile
 from epg.source import Span
 

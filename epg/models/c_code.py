@@ -14,8 +14,8 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
+from epg.dataclass import dataclass
 from epg.documents.source_file import C11, SourceFile
 from epg.models.identifiers import words
 from epg.source import Span

@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 
+from epg.dataclass import dataclass
 from epg.models.link import Linked
 from epg.models.tokens import Tokens
 

@@ -8,10 +8,10 @@ be found by their names only.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.documents.xml_file import Element, load_xml
 from epg.models.folders import entries

@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from fractions import Fraction
 
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.documents.text_file import one_line
 from epg.documents.xml_file import Element

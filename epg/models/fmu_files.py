@@ -13,10 +13,10 @@ import re
 import stat
 import struct
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.documents.source_file import MAX_BYTES
 from epg.documents.text_file import ANOTHER_FILE, too_large

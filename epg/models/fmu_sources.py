@@ -10,10 +10,11 @@ from __future__ import annotations
 import posixpath
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from pathlib import Path
 
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.documents.source_file import SourceFile, decode
 from epg.documents.text_file import one_line

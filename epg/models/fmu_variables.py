@@ -6,8 +6,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.documents.text_file import one_line
 from epg.documents.xml_file import Element

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+from epg.dataclass import dataclass
 from epg.models.c_code import KEYWORDS, Code, Function
 from epg.models.identifiers import words
 

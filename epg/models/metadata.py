@@ -8,9 +8,9 @@ difference is reported as a warning that names both values.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics, Note
 from epg.models.assignments import PortLine, assignments, exact_number, number, port_lines
 from epg.models.export_configuration import (

@@ -8,9 +8,9 @@ Lists such as ``INPUT_NAMES3`` and ``INPUT_UNITS`` have one entry on each line; 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from pathlib import Path
 
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.documents.source_file import STRING, SourceFile
 from epg.documents.xml_file import load_xml

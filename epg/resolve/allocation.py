@@ -14,12 +14,13 @@ Claims that still have a choice then get better places (:mod:`epg.resolve.prefer
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from fractions import Fraction
 from types import MappingProxyType
 
 from epg.catalog.hardware import Peripheral, ResourceClass, Target
 from epg.check.other_code import NO_OTHER_CODE, OtherCode
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.resolve.claims import TICK, Claim, ClaimKey
 from epg.resolve.conflict import Candidate, report_conflicts

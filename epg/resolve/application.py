@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from pathlib import Path
 
@@ -13,6 +13,7 @@ from epg.check.bindings import ParameterSetting
 from epg.check.communication import Communication
 from epg.check.configuration import Component, Control
 from epg.check.other_code import NO_OTHER_CODE, OtherCode
+from epg.dataclass import dataclass
 from epg.models.model import Model, Port
 from epg.resolve.allocation import Assignment
 from epg.resolve.parameters import RosParameters

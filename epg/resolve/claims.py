@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from types import MappingProxyType
 
 from epg.catalog.hardware import Target
 from epg.catalog.kind import KindClaim
 from epg.check.configuration import Component, Configuration
+from epg.dataclass import dataclass
 from epg.diagnostics import Note
 from epg.source import Span
 

@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
 from epg.catalog.hardware import Peripheral, ResourceClass, Target
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.items import pin_list
 from epg.quantity import show

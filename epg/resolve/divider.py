@@ -8,10 +8,10 @@ Division(prescaler=1, counter=6250)
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from fractions import Fraction
 
 from epg.catalog.hardware import Divider
+from epg.dataclass import dataclass
 
 NEAR_ENOUGH = Fraction(1, 100)
 """The largest relative error of a divider that does not have to be exact."""

@@ -14,12 +14,13 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from types import MappingProxyType
 
 from epg.catalog.hardware import Peripheral, ResourceClass, Target
 from epg.check.configuration import Configuration
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.resolve.allocation import agreement
 from epg.resolve.claims import Claim, Stated, component_claims, tick_claims

@@ -20,10 +20,10 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
 from epg.catalog.kind import KindPort
 from epg.check.configuration import Component
+from epg.dataclass import dataclass
 from epg.models.model import Model, Port
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
 from epg.check.bindings import Bindings, ParameterSetting
 from epg.check.communication import Communication
 from epg.check.names import ros_parameter_name
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.models.model import Model, Parameter
 

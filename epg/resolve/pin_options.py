@@ -10,11 +10,12 @@ an encoder's B must be next to A.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 
 from epg.catalog.hardware import ResourceClass
 from epg.check.configuration import Configuration
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.resolve.claims import Claim, tick_claims
 from epg.resolve.first_fit import Signal, complete_claims, first_fit, is_complete, signals_of, with_pins

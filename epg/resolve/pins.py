@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from types import MappingProxyType
 
 from epg.catalog.hardware import Peripheral, ResourceClass, Target
 from epg.check.other_code import NO_OTHER_CODE, OtherCode
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.items import pin_list
 from epg.resolve.claims import Claim, Stated

@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
 from epg.check.bindings import Bindings
 from epg.check.configuration import Component, Configuration
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.schema import extended_from
 from epg.models.model import Model

@@ -22,7 +22,8 @@ The search must also prove quickly that a wiring is impossible.  Three things ma
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+
+from epg.dataclass import dataclass
 
 WHOLE = -1
 """Used instead of the number of a slot: the whole instance."""

@@ -11,8 +11,9 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.ros.robot import HOST_SERIAL, PICO_DIGITS, Robot
 from epg.source import Span

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
+from epg.dataclass import dataclass
 from epg.ros.recording import Recording, Signal
 
 GRID = 20_000

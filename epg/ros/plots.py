@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
+from epg.dataclass import dataclass
 from epg.ros.messages import SCALARS, fields_of, library_of
 from epg.ros.robot import Robot, RobotTopic
 

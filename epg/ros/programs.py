@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from epg.check.names import topic_problem
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.ros.robot import HOST_SERIAL, Robot
 from epg.source import Span

@@ -14,10 +14,11 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TextIO
 
+from epg.dataclass import dataclass
 from epg.messages.library import Library
 from epg.ros.messages import library_of, numbers
 from epg.ros.robot import Robot, RobotTopic

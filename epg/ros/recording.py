@@ -12,9 +12,9 @@ import csv
 import math
 from array import array
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.source import Span
 

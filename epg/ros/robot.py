@@ -12,11 +12,12 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from epg.check.names import identifier_problem, namespace_problem, node_name_problem, topic_problem
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.source import Span
 

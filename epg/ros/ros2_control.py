@@ -14,12 +14,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
 import yaml
 
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.ros.robot import Robot, RobotTopic
 from epg.source import Span

@@ -10,8 +10,8 @@ from __future__ import annotations
 import shlex
 import string
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+from epg.dataclass import dataclass
 from epg.ros.agents import Agent
 from epg.ros.launch_file import describe
 

@@ -9,10 +9,10 @@ import subprocess
 import time
 from array import array
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn
 
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics, UserError
 from epg.source import Span
 

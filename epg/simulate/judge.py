@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Mapping
-from dataclasses import dataclass
 
+from epg.dataclass import dataclass
 from epg.simulate.reference import Reference
 from epg.simulate.scenario import Scenario
 from epg.simulate.tracking import Check, Tracking, WindowResult, check, evaluate, track

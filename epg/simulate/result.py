@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.simulate.ending import Ending
 from epg.simulate.executable import Statistics

@@ -7,10 +7,11 @@ import json
 import time
 from array import array
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.simulate.ending import Ending, how_it_ended
 from epg.simulate.executable import read_trace, run_program

@@ -12,11 +12,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from pathlib import Path
 from types import MappingProxyType
 
+from epg.dataclass import dataclass
 from epg.source import Span
 
 FAILURES = ("die", "hang", "restart", "offline", "online")

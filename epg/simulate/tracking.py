@@ -7,9 +7,9 @@ import math
 from array import array
 from bisect import bisect_left, bisect_right
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
+from epg.dataclass import dataclass
 from epg.simulate.reference import Reference
 from epg.simulate.scenario import Axis, Profile, Window
 

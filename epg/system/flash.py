@@ -20,10 +20,11 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
 from epg.catalog.platform import Flashing
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.emit.cmake import PathNames
 from epg.emit.outputs import application_outputs

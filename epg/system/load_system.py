@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from fractions import Fraction
 from pathlib import Path
 from types import MappingProxyType
 
 from epg.check.communication import time_of
 from epg.check.target_names import check_name
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.documents.items import map_of
 from epg.documents.schema import load_schema, validate

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from pathlib import Path
 
 from epg.catalog.catalog import Catalog, load_catalog
 from epg.catalog.platform import Family
 from epg.data import targets_roots
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.models import load_model
 from epg.models.model import Model

@@ -8,8 +8,9 @@ from other programs come from the left.  The plant of the system is on the left 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from epg.dataclass import dataclass
 from epg.graph.svg import WIRES, Picture, width
 from epg.quantity import show
 from epg.resolve.application import Plant

@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from epg.check.simulated import PLATFORM
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.emit.application import starts_by_step
 from epg.emit.cmake import PathNames, images_cmake, system_cmake

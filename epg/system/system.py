@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from fractions import Fraction
 from pathlib import Path
 from types import MappingProxyType
 
 from epg.check.topic_ends import TopicEnd
+from epg.dataclass import dataclass
 from epg.project import Request, SystemPart
 from epg.source import Span, YamlNode
 

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
+from epg.dataclass import dataclass
 from epg.tools.find_tool import Surroundings, places, tool_in, version_numbers, version_of
 from epg.tools.remedy import get_it
 from epg.tools.tools import Tool

@@ -13,10 +13,11 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.documents.text_file import read_text
 from epg.source import Span

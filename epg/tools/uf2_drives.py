@@ -11,8 +11,9 @@ import re
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
+
+from epg.dataclass import dataclass
 
 MOUNTS = Path("/proc/self/mounts")
 """The file in which Linux lists the folders of all drives."""

@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
 from pathlib import Path
+
+from epg.dataclass import dataclass
 
 DEVICES = Path("/sys/bus/usb/devices")
 """The folder in which Linux has a folder for each USB device."""

@@ -19,7 +19,7 @@ import shlex
 import subprocess
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +27,7 @@ from epg.bootstrap import cache_folder
 from epg.check.configuration import Configuration
 from epg.connect.build.plan import make_plan
 from epg.connect.projects import Job
+from epg.dataclass import dataclass
 
 FILE = "agreed-builds"
 """A file in EPG's cache, with one line for each :attr:`Question.key` that the user has agreed to."""

@@ -15,11 +15,12 @@ from __future__ import annotations
 import re
 from collections import deque
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 from epg.connect.build.cmake_message import CMakeMessage, starts_cmake_message
+from epg.dataclass import dataclass
 
 LIMIT = 100
 """The number of messages that are kept for one build; one wrong header can cause thousands."""

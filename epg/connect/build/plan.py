@@ -12,7 +12,6 @@ import os
 import shutil
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 from epg.catalog.hardware import Target
@@ -22,6 +21,7 @@ from epg.connect.build.tools import ALWAYS, find_tools, lack_of
 from epg.connect.build_folders import CACHE, USUAL
 from epg.connect.projects import Job
 from epg.data import data_folder
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.tools.find_tool import read_cmake_cache
 from epg.tools.tools import Tool

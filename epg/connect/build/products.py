@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from epg.catalog.platform import Platform
+from epg.dataclass import dataclass
 
 CLIENT = "client-epg"
 _QUERY = "codemodel-v2"

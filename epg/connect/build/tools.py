@@ -7,7 +7,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from epg.bootstrap import cache_folder
@@ -16,6 +15,7 @@ from epg.check.communication import tools_for
 from epg.check.configuration import Configuration
 from epg.connect.build.messages import Message
 from epg.connect.projects import Job, find_jobs
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.project import load_configuration
 from epg.tools.find_tool import Finding, Surroundings, find_tool

@@ -7,12 +7,12 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 from pathlib import Path
 
 from epg.catalog.catalog import load_catalog
 from epg.connect.literal_calls import FILE, LiteralCalls
 from epg.connect.projects import Job, find_jobs
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.project import load_configuration
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
@@ -19,6 +18,7 @@ from epg.catalog.platform import Flashing
 from epg.connect.activity import Activity, Outcome, message_of
 from epg.connect.build.messages import Message, Messages
 from epg.connect.projects import Job
+from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics, UserError
 from epg.resolve.application import Application
 from epg.source import Span

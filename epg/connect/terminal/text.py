@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
+
+from epg.dataclass import dataclass
 
 State = Mapping[str, Any]
 OPEN, UNCONNECTED = "(open)", "(unconnected)"

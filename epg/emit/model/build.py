@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
+from epg.dataclass import dataclass
 from epg.emit.model.copies import copies, copy_name
 from epg.emit.model.fmu_code import fmu_folder
 from epg.models.details import CFunctionExport, CppClassExport, FmuExport, HandWritten

@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
+from epg.dataclass import dataclass
 from epg.emit.model.fmi_headers import fmi_functions, fmi_headers
 from epg.emit.text import Code, cstring
 from epg.models.details import FmuExport, FmuPorts
