@@ -92,7 +92,7 @@ def _command(arguments: Sequence[str]) -> str | None:
 
 
 def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
-    """The parser.  Only the module of the chosen subcommand is imported, to save time."""
+    """The parser.  To save time, it has only the subcommand that is the first word, and imports only the chosen one."""
     parser = argparse.ArgumentParser(prog="epg", description="Turns a controller modelled in 20-sim into firmware.")
     parser.add_argument("--version", action="version", version=f"epg {epg.__version__}")
     parser.add_argument("--cmake-dir", action="store_true", help="print the folder of EPGConfig.cmake and exit")
@@ -102,7 +102,8 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     )
     subparsers = parser.add_subparsers(dest="command", metavar="COMMAND")
     chosen = _command(arguments)
-    for name, summary in COMMANDS.items():
+    shown = {chosen: COMMANDS[chosen]} if chosen in COMMANDS and chosen == arguments[0] else COMMANDS
+    for name, summary in shown.items():
         sub = subparsers.add_parser(name, help=summary, description=summary[0].upper() + summary[1:] + ".")
         if name == chosen:
             sub.set_defaults(parser=sub)

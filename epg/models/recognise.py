@@ -11,7 +11,7 @@ from pathlib import Path
 from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.documents.source_file import SourceFile, read_any_text, read_source
-from epg.models import c_function, cpp_class, hand_written
+from epg.models import c_function, cpp_class
 from epg.models.c_code import parse_code
 from epg.models.fmu_files import DESCRIPTION, SUFFIX, is_fmu_folder
 from epg.models.folders import source_files
@@ -19,7 +19,6 @@ from epg.models.link import is_program
 from epg.models.model import Model
 from epg.models.model_yaml import FILE_NAME
 from epg.models.tokens import is_tokens_file, load_tokens
-from epg.models.tokens_model import load_tokens_model
 from epg.models.whole import is_whole
 from epg.source import Span
 
@@ -105,7 +104,14 @@ def _candidates(folders: list[Path]) -> list[FoundModel]:
 
 def _hand_written(folder: Path) -> list[FoundModel]:
     path = folder / FILE_NAME
-    return [FoundModel(path, partial(hand_written.load_hand_written, path))] if path.is_file() else []
+    return [FoundModel(path, partial(_load_hand_written, path))] if path.is_file() else []
+
+
+# Imported when they are needed: a run needs one of these modules, and together they take a third of all imports.
+def _load_hand_written(path: Path, diagnostics: Diagnostics) -> Model | None:
+    from epg.models.hand_written import load_hand_written
+
+    return load_hand_written(path, diagnostics)
 
 
 def _fmus(folder: Path) -> list[FoundModel]:
@@ -115,7 +121,7 @@ def _fmus(folder: Path) -> list[FoundModel]:
 
 
 def _load_fmu(path: Path, diagnostics: Diagnostics) -> Model | None:
-    from epg.models.fmu import load_fmu  # a quarter of all imports for a model, and few models are FMUs
+    from epg.models.fmu import load_fmu
 
     return load_fmu(path, diagnostics)
 
@@ -163,6 +169,8 @@ def _tokens(folder: Path) -> list[FoundModel]:
 
 
 def _load_tokens(path: Path, diagnostics: Diagnostics) -> Model | None:
+    from epg.models.tokens_model import load_tokens_model
+
     tokens = load_tokens(path, diagnostics, required=True)
     return load_tokens_model(tokens, diagnostics) if tokens else None
 
@@ -177,7 +185,7 @@ def _load_file(path: Path, whole: Span, diagnostics: Diagnostics) -> Model | Non
     if suffix == ".xml":
         return _load_tokens(path, diagnostics)
     if suffix in (".yaml", ".yml"):
-        return hand_written.load_hand_written(path, diagnostics)
+        return _load_hand_written(path, diagnostics)
     if suffix in (*c_function.SUFFIXES, *cpp_class.SUFFIXES):
         before = diagnostics.error_count
         candidate = _source_candidate(path, diagnostics)
