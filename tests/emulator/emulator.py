@@ -37,7 +37,7 @@ class Emulator:
 
         ``stock``: use the boot ROM that ``EPG_RP2040_BOOTROM`` names, instead of EPG's replacement for it.  ``options``
         are those of the command ``load``: ``usb={"seed": 3, "phase": 120, "clock_error": 500}``, ``boot_cycles``,
-        ``flash_size``, ``clock`` (clk_sys in Hz, if the image sets another frequency than 125 MHz).
+        ``flash_size``, ``flash_times``, ``clock`` (clk_sys in Hz, if the image sets another frequency than 125 MHz).
         """
         environment = {**os.environ, "EPG_RP2040JS": str(rp2040js())}
         self._process = subprocess.Popen(

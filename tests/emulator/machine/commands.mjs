@@ -31,18 +31,19 @@ export class Commands {
     // Images and time --------------------------------------------------------------------------------------------------
 
     /**
-     * {image, rom?, boot_rom?, clock?, flash_size?, boot_cycles?, wait_states?, usb?}; `rom` is an ELF file, `boot_rom` a
-     * binary.
+     * {image, rom?, boot_rom?, clock?, flash_size?, flash_times?, boot_cycles?, wait_states?, usb?}; `rom` is an ELF file,
+     * `boot_rom` a binary.  `flash_times`: microseconds [of erasing a sector, of programming a page].
      */
     load({
         image, rom, boot_rom: bootRom, clock, flash_size: flashSize, boot_cycles: bootCycles,
-        wait_states: waitStates, usb = {},
+        wait_states: waitStates, flash_times: flashTimes, usb = {},
     }) {
         const [bytes, romSymbols] = bootRom ? [pad(readFileSync(bootRom)), new Map()] : romFromElf(need(rom, 'rom'));
         const { clock_error: clockError, packet_delay: delay, ...others } = usb;
         const packetDelay = delay === undefined ? undefined : (random) => delay[0] + random.next() * (delay[1] - delay[0]);
         const machine = new Machine({
-            rom: bytes, romSymbols, clock, flashSize, bootCycles, waitStates, usb: { clockError, packetDelay, ...others },
+            rom: bytes, romSymbols, clock, flashSize, bootCycles, waitStates, flashTimes,
+            usb: { clockError, packetDelay, ...others },
         });
         this.machine = machine;
         machine.usbHost.onData = (data, port) => this.receive(data, port);

@@ -10,7 +10,7 @@
 import { CycleClock } from './clock.mjs';
 import { Core, Fault, replicate } from './core.mjs';
 import { Launch } from './launch.mjs';
-import { FlashCache, MemoryBus } from './memory_bus.mjs';
+import { BusControl, FlashCache, MemoryBus } from './memory_bus.mjs';
 import { BasePeripheral, IRQ, RP2040 } from './package.mjs';
 import { Pads } from './pads.mjs';
 import { PioBlock } from './pio.mjs';
@@ -45,9 +45,11 @@ export class Machine {
      * `rom`: image of the boot ROM.  `clock`: of clk_sys in Hz, from the first cycle on.  `flashSize` in bytes.
      * `usb`: options of UsbHost.  `bootCycles`: from reset to the first instruction of the image's second stage.
      * `waitStates`: memory takes time: the flash has its cache, and the cores wait for each other.
+     * `flashTimes`: microseconds of erasing a sector of flash and of programming a page, if not the typical ones.
      */
     constructor({
         rom, romSymbols = new Map(), clock = 125e6, flashSize = 2 << 20, usb = {}, bootCycles = 0, waitStates = false,
+        flashTimes,
     }) {
         this.clock = new CycleClock(clock);
         this.rom = rom;
@@ -69,6 +71,10 @@ export class Machine {
         this.onException = []; // (core, number, entered)
         this.onReset = []; // (cause)
         this.onFlashWrite = []; // (offset, size, value): erased words, programmed bytes
+        if (flashTimes !== undefined) {
+            const view = new DataView(rom.buffer, rom.byteOffset);
+            flashTimes.forEach((time, n) => view.setUint32(romSymbols.get('rom_flash_times_us').address + 4 * n, time, true));
+        }
         this.usbBootAddress = romSymbols.get('rom_reset_usb_boot')?.address ?? -1;
         this.usbOptions = usb;
         this.uartData = () => {}; // (byte, number)
@@ -119,7 +125,8 @@ export class Machine {
         this.usb.host = this.usbHost ?? null;
         this.xipSram = new Uint32Array(XIP_SRAM_SIZE / 4);
         this.flashCache = new FlashCache(chip, chip.peripherals[0x18000]);
-        this.memoryBus = this.waitStates ? new MemoryBus(this.flashCache) : null;
+        this.busControl = new BusControl(chip, 'BUSCTRL');
+        this.memoryBus = this.waitStates ? new MemoryBus(this.flashCache, this.busControl) : null;
         this.cores.forEach((core) => {
             core.bus = this.memoryBus;
             this.hookFlash(core, null);
@@ -129,6 +136,7 @@ export class Machine {
             0x40000: new Registers(chip, 'SYSINFO', { 0: CHIP_ID_B2, 4: 2, 0x40: 0x7f000000 }),
             0x4000c: new Resets(this, chip),
             0x40010: new PowerOn(this, chip),
+            0x40030: this.busControl,
             0x40018: new Registers(chip, 'IO_QSPI'),
             0x40050: this.pwm,
             0x40054: this.timer,

@@ -124,30 +124,60 @@ export class FlashCache extends BasePeripheral {
     }
 }
 
+const PRIORITY = 0x00; // registers of BUSCTRL (data sheet of the RP2040, 2.1.5.2)
+const PRIORITY_ACK = 0x04;
+const PRIORITY_BITS = [0, 4]; // of the cores
+
+/** Which core goes first. */
+export class BusControl extends BasePeripheral {
+    priority = 0;
+
+    /** True if `core` goes first where both cores want the same bank in the same cycle. */
+    goesFirst(core) {
+        return ((this.priority >> PRIORITY_BITS[core]) & 1) > ((this.priority >> PRIORITY_BITS[1 - core]) & 1);
+    }
+
+    readUint32(offset) {
+        return offset === PRIORITY ? this.priority : offset === PRIORITY_ACK ? 1 : 0;
+    }
+
+    writeUint32(offset, value) {
+        if (offset === PRIORITY) {
+            this.priority = value & 0x1111;
+        }
+    }
+}
+
 const STRIPED = 256 * 1024;
 const BANKS = 6;
 const KEPT = 16; // cycles: longer than the accesses of one instruction
 const APB_READ = 3;
 const APB_WRITE = 4;
 
-/** The buses between the cores and the memories.  A core that comes second in a cycle waits for the other. */
+/** The buses between the cores and the memories.  A core that comes second in a cycle, or has less priority, waits. */
 export class MemoryBus {
-    constructor(cache) {
+    constructor(cache, control) {
         this.cache = cache;
+        this.control = control;
         this.cycles = new Float64Array(BANKS * KEPT).fill(-1);
         this.owners = new Uint8Array(BANKS * KEPT);
         this.apbUntil = 0;
         this.apbOwner = 0;
         this.waits = [0, 0]; // of each core, for the other one
+        this.debts = [0, 0]; // cycles that a core still has to wait because the other one came first by its priority
     }
 
     /** An access to SRAM.  Words of the first 256 kB lie in four banks in turn (data sheet of the RP2040, 2.6.2). */
     sram(core, offset, cycle) {
         const bank = offset < STRIPED ? (offset >>> 2) & 3 : 4 + ((offset - STRIPED) >>> 12);
-        let at = cycle;
+        const first = this.control.goesFirst(core);
+        let at = cycle + this.debts[core];
+        this.debts[core] = 0;
         for (;;) {
             const slot = bank * KEPT + (at % KEPT);
-            if (this.cycles[slot] !== at || this.owners[slot] === core) {
+            const taken = this.cycles[slot] === at && this.owners[slot] !== core;
+            if (!taken || first) {
+                this.debts[1 - core] += taken ? 1 : 0; // its access is over already: the next one waits
                 this.cycles[slot] = at;
                 this.owners[slot] = core;
                 break;

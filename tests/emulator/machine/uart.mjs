@@ -27,6 +27,7 @@ const MIS = 0x40;
 const ICR = 0x44;
 const DMACR = 0x48;
 
+const RECEIVE_BY_DMA = 1; // bit of DMACR
 const FRAMING_ERROR = 1 << 8; // bit of an entry of the FIFO
 const OVERRUN = 1 << 11;
 const RX = 1 << 4; // bit of the interrupt registers
@@ -45,6 +46,7 @@ export class Uart extends BasePeripheral {
         this.sending = this.clock.createAlarm(() => this.sent());
         this.arriving = this.clock.createAlarm(() => this.arrived());
         this.silence = this.clock.createAlarm(() => this.raise(TIMEOUT));
+        this.request = [21, 23][number]; // to the DMA, for reception (data sheet, table 120)
         this.onData = () => {}; // (byte, number of the UART)
         this.outside = machine.uartOutside[number]; // {baud, queue}: the bytes that the other device sends
         this.reset();
@@ -133,6 +135,11 @@ export class Uart extends BasePeripheral {
     update() {
         const irq = this.number === 0 ? IRQ.UART0 : IRQ.UART1;
         this.machine.setInterrupt(irq, (this.raw & this.registers[IMSC]) !== 0);
+        if (this.registers[DMACR] & RECEIVE_BY_DMA && this.rx.length > 0) {
+            this.chip.dma.setDREQ(this.request);
+        } else {
+            this.chip.dma.clearDREQ(this.request);
+        }
     }
 
     // To the other device -------------------------------------------------------------------------------------------
@@ -197,6 +204,7 @@ export class Uart extends BasePeripheral {
             if (this.rx.length === this.level(3)) {
                 this.raise(RX);
             }
+            this.update(); // the DMA may take the byte at once
         }
         this.silence.at(this.clock.now + Math.round(32 * this.bit));
     }

@@ -1,6 +1,7 @@
 /* The time of reads from flash, SRAM and devices.  The code that measures is in SRAM. */
 #include "cases.h"
 
+#include "hardware/structs/busctrl.h"
 #include "hardware/structs/systick.h"
 #include "hardware/structs/timer.h"
 #include "hardware/structs/xip_ctrl.h"
@@ -70,7 +71,8 @@ static uint32_t __attribute__((noinline)) __scratch_y("memory") time_of_reads(co
     return (start - systick_hw->cvr) & LONGEST;
 }
 
-/* The cycles of 1000 reads of core 0: alone; beside reads of core 1 in another bank, in the same bank; of a timer. */
+/* The cycles of 1000 reads of core 0: alone; beside reads of core 1 in another bank, in the same bank; of a timer
+ * beside core 1; and in the same bank again, with a higher priority than core 1. */
 void case_contention(void)
 {
     start_systick();
@@ -87,6 +89,13 @@ void case_contention(void)
         busy_wait_us(20);
         results[2u + n] = time_of_reads(n < 2u ? &words[0] : &timer_hw->timerawl);
     }
+    busctrl_hw->priority = BUSCTRL_BUS_PRIORITY_PROC0_BITS;
+    read_by_core_1 = &words[0];
+    multicore_reset_core1();
+    multicore_launch_core1(core_1_reads);
+    busy_wait_us(20);
+    results[5] = time_of_reads(&words[0]);
+    busctrl_hw->priority = 0;
     multicore_reset_core1();
     restore_interrupts(saved);
 }

@@ -79,3 +79,11 @@ rom_memcpy:
 4:  subs r2, r2, #1
     bhs 3b
     pop {r0, r4, r5, r6, pc}
+
+    .section .rodata.flash_times, "a"
+    .balign 4
+    .global rom_flash_times_us
+    .type rom_flash_times_us, %object
+    .size rom_flash_times_us, 8
+rom_flash_times_us:
+    .word 45000, 400

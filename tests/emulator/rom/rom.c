@@ -3,7 +3,8 @@
  *
  * It is for images that are built with the compiler's own float and double: it has no floating-point tables.  It erases
  * and programs flash by plain writes to the XIP window, which the emulator allows for code in ROM.  The duration of
- * erasing and programming is the typical one of a W25Q16JV (data sheet of the chip, revision H, 9.6).
+ * erasing and programming is the typical one of a W25Q16JV (data sheet of the chip, revision H, 9.6), unless the
+ * emulator changes it.
  */
 #include <stdint.h>
 
@@ -12,9 +13,10 @@
 #define SSI_ENABLE (*(volatile uint32_t *)0x18000008u)
 #define XIP_BASE 0x10000000u
 #define SECTOR 4096u
-#define SECTOR_ERASE_US 45000u
 #define PAGE 256u
-#define PAGE_PROGRAM_US 400u
+
+/* Microseconds of erasing a sector and of programming a page: in rom.S.  The emulator writes other values there. */
+extern const volatile uint32_t rom_flash_times_us[2];
 
 typedef struct entry {
     uint16_t code;
@@ -117,7 +119,7 @@ void rom_flash_range_erase(uint32_t offset, uint32_t count, uint32_t block_size,
     for (uint32_t at = 0; at < count; at += 4) {
         *(volatile uint32_t *)(XIP_BASE + offset + at) = 0xffffffffu;
         if (at % SECTOR == 0) {
-            wait_us(SECTOR_ERASE_US);
+            wait_us(rom_flash_times_us[0]);
         }
     }
 }
@@ -128,7 +130,7 @@ void rom_flash_range_program(uint32_t offset, const uint8_t *data, uint32_t coun
         /* The emulator clears bits only: programming cannot set a bit. */
         *(volatile uint8_t *)(XIP_BASE + offset + at) = data[at];
         if (at % PAGE == 0) {
-            wait_us(PAGE_PROGRAM_US);
+            wait_us(rom_flash_times_us[1]);
         }
     }
 }
