@@ -11,7 +11,7 @@
 #include "session.h"
 
 enum {
-    LINES = 4,          /* lines of an answer that are written in one poll */
+    LINES = 1,          /* lines of an answer that are written in one poll */
     ANSWER_ROOM = 256,  /* free bytes of output that a command needs before it is carried out, */
     PATIENCE_MS = 100,  /* unless the other end has not read for this time: commands must act all the same */
     ABANDON_MS = 2000,  /* an answer of several lines ends if the other end has not read for this time */
@@ -41,8 +41,7 @@ static void begin_session(bool connected)
         epg_control_request(session.target->control, false);
         session.jogging = false;
     }
-    epg_console_input_clear(&session.input);
-    session.input.echo = false;
+    session.input = (epg_console_input_t){0};
     epg_console_output_clear(&session.output);
     session.list = NULL;
     session.wait = EPG_CONSOLE_READY;

@@ -8,7 +8,7 @@
 #include "epg/decimal.h"
 #include "session.h"
 
-enum { CHUNK = 64, END_OF_TEXT = 3, BACKSPACE = 8, DELETE = 127 };
+enum { END_OF_TEXT = 3, BACKSPACE = 8, DELETE = 127 };
 
 void epg_console_input_clear(epg_console_input_t *input)
 {
@@ -53,12 +53,13 @@ static void take(epg_console_session_t *session, char byte)
 
 void epg_console_read(epg_console_session_t *session)
 {
-    for (int i = 0; i < CHUNK && !session->input.complete; i++) {
-        char byte;
-        if (session->stream->read(session->stream->context, &byte, 1) == 0) {
-            return;
-        }
-        take(session, byte);
+    epg_console_input_t *input = &session->input;
+    if (input->chunk_position == input->chunk_length) {
+        input->chunk_position = 0;
+        input->chunk_length = session->stream->read(session->stream->context, input->chunk, sizeof input->chunk);
+    }
+    while (input->chunk_position < input->chunk_length && !input->complete) {
+        take(session, input->chunk[input->chunk_position++]);
     }
 }
 

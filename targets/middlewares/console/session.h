@@ -42,8 +42,13 @@ typedef enum epg_console_wait {
     EPG_CONSOLE_DISABLING /**< a cycle acts on a request to disable */
 } epg_console_wait_t;
 
+enum { EPG_CONSOLE_CHUNK = 64 };
+
 /** The line that is being received. */
 typedef struct epg_console_input {
+    char chunk[EPG_CONSOLE_CHUNK]; /**< bytes that were read from the stream at once */
+    size_t chunk_length;
+    size_t chunk_position; /**< the next byte of the chunk; the bytes after the end of a line wait here */
     char line[EPG_CONSOLE_LINE + 1];
     size_t length;
     bool too_long;

@@ -43,6 +43,9 @@ static const int64_t LONGEST_ROUND_NS = 100 * 1000000; /* longest round trip of 
 
 enum { FRAMES_PER_POLL = 32, DROPPED_PER_FRAME = 8 };
 
+/** Bytes on the line.  As many or more that one poll has written are sent by the next one, so that both are short. */
+enum { LONG_MESSAGES = 512 };
+
 /** The progress of a reliable stream: a number that grows until all frames are acknowledged or received. */
 typedef struct progress {
     uint16_t number;
@@ -451,17 +454,17 @@ static void poll(uint64_t now_ns)
     if (client.status.state == EPG_XRCE_WAITING) {
         poll_waiting();
     } else if (check_agent()) {
+        if (client.target->service_count > 0) {
+            epg_xrce_services_poll(&client.services, now_ns); /* the library's buffer is free until the next message */
+        }
         if (client.status.state == EPG_XRCE_CREATING) {
             poll_creating();
         } else {
             poll_running();
         }
     }
-    if (client.status.state != EPG_XRCE_WAITING) {
+    if (client.status.state != EPG_XRCE_WAITING && client.buffered < LONG_MESSAGES) {
         uxr_flash_output_streams(&client.session);
-        if (client.target->service_count > 0) {
-            epg_xrce_services_poll(&client.services, now_ns); /* the library's buffer is free until the next message */
-        }
     }
 }
 

@@ -166,12 +166,16 @@ bool epg_xrce_entities_exist(const epg_xrce_entities_t *entities)
     return entities->step >= first_reading(entities->node);
 }
 
-/** Requests the samples of all remaining readers and repliers.  The agent's answer consists of the samples only. */
-static epg_xrce_progress_t ask_for_all_samples(epg_xrce_entities_t *entities)
+/** Readers and repliers whose samples are requested in one poll, which must take less than a millisecond. */
+enum { READINGS_PER_POLL = 4 };
+
+/** Requests the samples of the next readers and repliers.  The agent's answer consists of the samples only. */
+static epg_xrce_progress_t ask_for_next_samples(epg_xrce_entities_t *entities)
 {
     const size_t subscriptions = entities->node->target->subscription_count;
     const size_t first = first_reading(entities->node);
-    while (entities->step - first < subscriptions + entities->node->target->service_count) {
+    const size_t count = subscriptions + entities->node->target->service_count;
+    for (int i = 0; i < READINGS_PER_POLL && entities->step - first < count; i++) {
         const size_t index = entities->step - first;
         const uint16_t request = index < subscriptions ? ask_for_samples(entities, index)
                                                        : ask_for_requests(entities, index - subscriptions);
@@ -180,7 +184,7 @@ static epg_xrce_progress_t ask_for_all_samples(epg_xrce_entities_t *entities)
         }
         entities->step++;
     }
-    return EPG_XRCE_COMPLETE;
+    return entities->step - first < count ? EPG_XRCE_UNDERWAY : EPG_XRCE_COMPLETE;
 }
 
 epg_xrce_progress_t epg_xrce_entities_poll(epg_xrce_entities_t *entities)
@@ -196,7 +200,7 @@ epg_xrce_progress_t epg_xrce_entities_poll(epg_xrce_entities_t *entities)
         entities->step++;
     }
     if (epg_xrce_entities_exist(entities)) {
-        return ask_for_all_samples(entities);
+        return ask_for_next_samples(entities);
     }
     entities->status = UXR_STATUS_NONE;
     entities->request = ask(entities);

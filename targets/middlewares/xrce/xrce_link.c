@@ -14,18 +14,23 @@ enum { BEGIN = 0x7E, ESCAPE = 0x7D, XOR = 0x20 };
 /* Addresses that all clients and all agents use. */
 enum { CLIENT = 1, AGENT = 0 };
 
+/* The first byte; two addresses, length and CRC if each of their bytes is stuffed. */
+enum { HEAD_AND_TAIL = 1 + 2 * 6 };
+
 /* Largest number of bytes in one call of epg_xrce_link_receive(). */
 enum { MOST_BYTES = 4096 };
 
 /** The field of a frame that comes next. */
 enum { OUTSIDE, SOURCE, DESTINATION, LENGTH_LOW, LENGTH_HIGH, PAYLOAD, CRC_LOW, CRC_HIGH };
 
+/** CRC-16 with the reflected polynomial 0xA001, four bits at a time: the remainders of all numbers of four bits. */
 static uint16_t crc_of_byte(uint16_t crc, uint8_t byte)
 {
+    static const uint16_t remainders[16] = {0x0000, 0xCC01, 0xD801, 0x1400, 0xF001, 0x3C00, 0x2800, 0xE401,
+                                            0xA001, 0x6C00, 0x7800, 0xB401, 0x5000, 0x9C01, 0x8801, 0x4400};
     uint32_t value = crc ^ byte;
-    for (int bit = 0; bit < 8; bit++) {
-        value = (value & 1U) != 0 ? value >> 1 ^ 0xA001U : value >> 1;
-    }
+    value = value >> 4 ^ remainders[value & 15U];
+    value = value >> 4 ^ remainders[value & 15U];
     return (uint16_t)value;
 }
 
@@ -57,7 +62,7 @@ size_t epg_xrce_link_cost(const epg_xrce_link_t *link, const void *data, size_t 
     for (size_t i = 0; i < size; i++) {
         cost += is_special(bytes[i]) ? 1U : 0U;
     }
-    return cost + 1 + 2 * 6; /* the first byte; two addresses, length and CRC if each of their bytes is stuffed */
+    return cost + HEAD_AND_TAIL;
 }
 
 size_t epg_xrce_link_room(const epg_xrce_link_t *link)
@@ -105,7 +110,8 @@ bool epg_xrce_link_send(epg_xrce_link_t *link, const void *data, size_t size)
     const uint8_t *bytes = data;
     stuffing_t stuffing = {.link = link, .length = 0};
     uint16_t crc = 0;
-    if (epg_xrce_link_room(link) < epg_xrce_link_cost(link, data, size)) {
+    const size_t room = epg_xrce_link_room(link);
+    if (room < 2U * size + HEAD_AND_TAIL && room < epg_xrce_link_cost(link, data, size)) {
         return false;
     }
     if (stream->datagrams) {

@@ -480,6 +480,7 @@ TEST(stats_of_a_node_are_shown_too)
     node = (epg_node_t){.unsent = 3, .malformed = 4000000000U};
     bench.target.node_state = &node;
     const char *stats = bench_say("stats\n");
+    bench_run(20);
     CHECK(has_line(stats, "stat unsent=3\r\n"));
     CHECK(has_line(stats, "stat malformed=4000000000\r\n"));
     CHECK(has_line(stats, "ok stats\r\n"));

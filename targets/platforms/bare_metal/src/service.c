@@ -6,14 +6,15 @@
  * Without an RTOS there are no tasks.  The service runs beside main() because it is an interrupt, so main() belongs to
  * the user.  All other interrupts can interrupt it, the user's too.
  *
- * The service runs every millisecond, started by the family's timer, and as soon as possible after a transport's
+ * The service runs at least every millisecond, started by the family's timer, and as soon as possible after a transport's
  * interrupt.
  *
  * It has its own stack.  The user's main stack need not be larger because of it.
  */
 #include "epg/family.h"
 
-#define PERIOD_US 1000U
+/** From one turn to the next is at most a millisecond; interrupts can delay a turn by the rest. */
+#define PERIOD_US 950U
 
 /**
  * Bytes of stack for the service itself and for the interrupts of USB and of the timer, which can interrupt it.  The

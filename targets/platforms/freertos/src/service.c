@@ -3,7 +3,7 @@
  * @file
  * The communication side on FreeRTOS: a task beside the user's tasks, in static memory.
  *
- * It runs every millisecond, and at once after a transport's interrupt.  Tasks of higher priority run first.  If they
+ * It runs at least every millisecond, and at once after a transport's interrupt.  Tasks of higher priority run first.  If they
  * make it wait longer than EPG_FAMILY_SERVICE_TIMEOUT_MS, the watchdog is no longer fed and resets the chip.
  */
 #include "epg/family.h"
@@ -54,6 +54,16 @@ static void rest(void)
     (void)ulTaskNotifyTake(pdTRUE, pdMS_TO_TICKS(1));
 }
 
+/** One turn, and a rest unless the kernel's tick has come meanwhile: from one turn to the next is at most a tick. */
+static void serve_until_tick(void)
+{
+    const TickType_t begin = xTaskGetTickCount();
+    service();
+    if (xTaskGetTickCount() == begin) {
+        rest();
+    }
+}
+
 void epg_port_wait_for_bytes(void)
 {
     epg_mcu_serve_others(rest);
@@ -65,8 +75,7 @@ static void run(void *argument)
     for (;;) {
         switch (atomic_load(&state)) {
         case SERVING:
-            service();
-            rest();
+            serve_until_tick();
             break;
         case PARKING:
             atomic_store(&state, PARKED);

@@ -6,7 +6,7 @@
  * 17 decimal digits identify every double (IEEE 754-2019, 5.12.2).  For most numbers that people write, 15 or 16 digits
  * do.  The code therefore tries 15, 16 and 17 digits, and takes the first text that reads back as the same double.
  *
- * Scaling by a power of ten takes at most 45 steps.  Each step cuts off less than one part in 2^160.  A text of 17
+ * Scaling by a power of ten takes at most 92 steps.  Each step cuts off less than one part in 2^160.  A text of 17
  * digits is nearer to its double than half the distance to the next one; the margin is a tenth of one part in 2^54.
  * This is far more than the error of all steps, so a written number always reads back.
  */
@@ -16,6 +16,8 @@
 
 enum {
     WORDS = 6,
+    NINE_DIGITS = 9,     /* a power of ten with so many zeros fits into a word, */
+    FOUR_DIGITS = 4,     /* and one with so many into half a word */
     FRACTION = 52,       /* bits of the significand after its leading 1 (IEEE 754-2019, table 3.5) */
     LEAST = -1074,       /* binary exponent of the smallest double above zero */
     INFINITE = 0x7FF,    /* biased exponent of infinity and NaN */
@@ -27,6 +29,7 @@ enum {
 
 #define SIGN ((uint64_t)1 << 63)
 #define NS_PER_S 1000000000U
+#define POWER_9 1000000000U
 
 static size_t put(char *text, size_t length, const char *more)
 {
@@ -40,10 +43,18 @@ static size_t put(char *text, size_t length, const char *more)
 static size_t digits_of(char text[20], uint64_t value)
 {
     size_t begin = 20;
-    do {
-        text[--begin] = (char)('0' + (int)(value % 10U));
-        value /= 10U;
+    uint32_t digits = 0;
+    do { /* nine digits at a time: a Cortex-M0+ takes ten times as long for a division of 64 bits as for one of 32 */
+        digits = (uint32_t)(value % POWER_9);
+        value /= POWER_9;
+        for (int i = 0; i < NINE_DIGITS && (digits != 0 || value != 0); i++) {
+            text[--begin] = (char)('0' + (int)(digits % 10U));
+            digits /= 10U;
+        }
     } while (value != 0);
+    if (begin == 20) {
+        text[--begin] = '0';
+    }
     return begin;
 }
 
@@ -79,23 +90,9 @@ static wide_t wide(uint64_t value, int exponent)
     return result;
 }
 
-/** value = value * factor / divisor; at least 161 bits of the result are kept. */
-static void multiply(wide_t *value, uint32_t factor, uint32_t divisor)
+/** Takes the WORDS most significant words, of which the last is not 0.  `words` has one more word at each end. */
+static void take_words(wide_t *value, const uint32_t words[WORDS + 2])
 {
-    uint32_t words[WORDS + 2] = {0}; /* one more word at each end */
-    uint64_t carry = 0;
-    for (size_t i = 0; i < WORDS; i++) {
-        carry += (uint64_t)value->words[i] * factor;
-        words[i + 1] = (uint32_t)(carry & 0xFFFFFFFFU);
-        carry >>= 32;
-    }
-    words[WORDS + 1] = (uint32_t)carry;
-    uint64_t rest = 0;
-    for (size_t i = WORDS + 2; i > 0; i--) {
-        rest = rest << 32 | words[i - 1];
-        words[i - 1] = (uint32_t)(rest / divisor);
-        rest %= divisor;
-    }
     size_t first = 2;
     while (words[first + WORDS - 1] == 0) {
         first--;
@@ -104,20 +101,52 @@ static void multiply(wide_t *value, uint32_t factor, uint32_t divisor)
     value->exponent += 32 * ((int)first - 1);
 }
 
+/** value = value * factor; at least 161 bits of the result are kept. */
+static void multiply(wide_t *value, uint32_t factor)
+{
+    uint32_t words[WORDS + 2] = {0};
+    uint64_t carry = 0;
+    for (size_t i = 0; i < WORDS; i++) {
+        carry += (uint64_t)value->words[i] * factor;
+        words[i + 1] = (uint32_t)(carry & 0xFFFFFFFFU);
+        carry >>= 32;
+    }
+    words[WORDS + 1] = (uint32_t)carry;
+    take_words(value, words);
+}
+
+/** value = value / divisor, which must be below 2^16; at least 161 bits of the result are kept. */
+static void divide(wide_t *value, uint32_t divisor)
+{
+    uint32_t words[WORDS + 2] = {0};
+    uint32_t rest = 0;
+    for (size_t i = WORDS + 1; i > 0; i--) { /* half a word at a time: a division of 64 bits takes much longer */
+        const uint32_t word = i > 1 ? value->words[i - 2] : 0U;
+        const uint32_t high = rest << 16 | word >> 16;
+        const uint32_t low = high % divisor << 16 | (word & 0xFFFFU);
+        words[i - 1] = high / divisor << 16 | low / divisor;
+        rest = low % divisor;
+    }
+    take_words(value, words);
+}
+
+static uint32_t power_of(int digits)
+{
+    uint32_t power = 1;
+    for (int i = 0; i < digits; i++) {
+        power *= 10U;
+    }
+    return power;
+}
+
 /** value = value * 10^power */
 static void scale(wide_t *value, int power)
 {
-    for (; power >= 9; power -= 9) {
-        multiply(value, 1000000000U, 1);
+    for (int left = power; left > 0; left -= NINE_DIGITS) {
+        multiply(value, power_of(left < NINE_DIGITS ? left : NINE_DIGITS));
     }
-    for (; power > 0; power--) {
-        multiply(value, 10, 1);
-    }
-    for (; power <= -9; power += 9) {
-        multiply(value, 1, 1000000000U);
-    }
-    for (; power < 0; power++) {
-        multiply(value, 1, 10);
+    for (int left = -power; left > 0; left -= FOUR_DIGITS) {
+        divide(value, power_of(left < FOUR_DIGITS ? left : FOUR_DIGITS));
     }
 }
 
@@ -129,15 +158,20 @@ static unsigned int bit(const wide_t *value, int place)
 /** Returns the whole number nearest to value / 2^exponent, which must be below 2^62; a tie goes to the even one. */
 static uint64_t rounded(const wide_t *value, int exponent)
 {
-    const int quarter = exponent - 2 - value->exponent; /* index of the bit with weight 1/4 */
+    const int quarter = exponent - 2 - value->exponent; /* index of the bit with weight 1/4; not negative */
+    const int first = quarter / 32;                     /* the word that contains it */
     uint64_t quarters = 0;
     bool more = false;
-    for (int i = 32 * WORDS - 1; i >= 0; i--) {
-        if (i >= quarter) {
-            quarters = quarters << 1 | bit(value, i);
-        } else {
-            more = more || bit(value, i) != 0;
-        }
+    for (int i = WORDS - 1; i > first; i--) {
+        quarters = quarters << 32 | value->words[i];
+    }
+    if (first < WORDS) {
+        const int shift = quarter % 32;
+        quarters = quarters << (32 - shift) | (uint64_t)value->words[first] >> shift;
+        more = (value->words[first] & ((1U << shift) - 1U)) != 0;
+    }
+    for (int i = 0; i < first && i < WORDS; i++) {
+        more = more || value->words[i] != 0;
     }
     quarters |= more ? 1U : 0U; /* only a remainder of exactly 2 quarters is a tie */
     return (quarters + 1U + (quarters >> 2 & 1U)) >> 2;
@@ -188,7 +222,10 @@ static uint64_t decimal(uint64_t significand, int exponent, int count, int *powe
     }
 }
 
-/** Returns the fewest digits that read back as the double `bits` (above zero, without sign), and their power of ten. */
+/**
+ * Returns digits that read back as the double `bits` (above zero, without sign), and their power of ten.  They are the
+ * fewest, except for zeros at their end.
+ */
 static uint64_t shortest(uint64_t bits, int *power)
 {
     const uint64_t fraction = bits & (((uint64_t)1 << FRACTION) - 1U);
@@ -204,9 +241,6 @@ static uint64_t shortest(uint64_t bits, int *power)
         if (nearest(&back) == bits) {
             break;
         }
-    }
-    for (; result % 10U == 0; ++*power) {
-        result /= 10U;
     }
     return result;
 }
@@ -259,8 +293,12 @@ size_t epg_decimal_write(char *text, double value)
     char digits[20];
     int power = 0;
     const size_t begin = digits_of(digits, shortest(size, &power));
-    const size_t count = sizeof digits - begin;
-    return lay_out(text, length, digits + begin, count, power + (int)count - 1);
+    size_t count = sizeof digits - begin;
+    const int point = power + (int)count - 1;
+    while (digits[begin + count - 1] == '0') {
+        count--;
+    }
+    return lay_out(text, length, digits + begin, count, point);
 }
 
 size_t epg_decimal_write_seconds(char *text, uint64_t time_ns)

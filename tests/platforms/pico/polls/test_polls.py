@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Communication on core 0 polls within a millisecond, whatever arrives, and no tick of core 1 is late meanwhile."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from tests.emulator.emulator import CYCLES_PER_MILLISECOND
+from tests.platforms.pico.images import PLATFORMS, skip_unless_emulated
+
+from .measure import Polls, measure_uart, measure_usb
+
+LONGEST = CYCLES_PER_MILLISECOND * 5 // 4
+"""A millisecond, and a quarter of it where all that is rare comes together: diagnostics while every line is full."""
+MILLISECONDS = 150
+
+
+@pytest.mark.parametrize("measure", [measure_usb, measure_uart])
+@pytest.mark.parametrize("platform", PLATFORMS)
+def test_within_a_millisecond(platform: str, measure: Callable[[str, int], Iterator[Polls]]) -> None:
+    skip_unless_emulated(platform)
+    for polls in measure(platform, MILLISECONDS):
+        assert polls.faults == 0
+        assert polls.longest <= LONGEST, polls
+        assert polls.ticks >= MILLISECONDS - 1
+        assert polls.deviations == {0}, polls
