@@ -35,7 +35,7 @@ bool epg_uart_connected(void *context)
 size_t epg_uart_read(void *context, void *data, size_t size)
 {
     epg_uart_t *uart = context;
-    return epg_ring_read(&uart->lines.received, data, size);
+    return epg_port_uart_read(&uart->port, data, size);
 }
 
 size_t epg_uart_write(void *context, const void *data, size_t size)

@@ -145,7 +145,7 @@ function(_epg_rp2_library library)
   include("${EPG_TARGETS_DIR}/libraries/pico_quadrature/library.cmake")
   target_link_libraries(${library} INTERFACE
     EPG::pico_quadrature pico_runtime pico_runtime_init pico_multicore pico_flash pico_unique_id
-    hardware_clocks hardware_exception hardware_flash hardware_gpio hardware_irq hardware_pwm hardware_sync
+    hardware_clocks hardware_dma hardware_exception hardware_flash hardware_gpio hardware_irq hardware_pwm hardware_sync
     hardware_timer hardware_uart hardware_watchdog)
   # The user's files are compiled with these definitions, too.  Those for assembler are not passed to C and C++.
   foreach(part DOUBLE FLOAT DIVIDER INT64_OPS BITS MEM)

@@ -6,11 +6,21 @@
  * A platform that offers the resource class `uart` implements these functions.  An interrupt handler moves the bytes
  * between the UART and two rings (epg/ring.h), so no function waits for a byte.  All functions are called from the
  * communication side and return at once.
+ *
+ * A family of chips whose hardware writes received bytes into memory has a header epg/family_uart.h.  It defines
+ * EPG_PORT_UART_BUFFER(), and the family implements epg_port_uart_read().  The members `bytes` and `size` of the ring
+ * `received` are then the buffer and the number of received bytes for which it has room.
  */
 #ifndef EPG_PORT_UART_H
 #define EPG_PORT_UART_H
 
 #include "epg/ring.h"
+
+#if defined __has_include
+#if __has_include("epg/family_uart.h")
+#include "epg/family_uart.h"
+#endif
+#endif
 
 /** The bytes of a UART on their way between the interrupt handler and the communication side. */
 typedef struct epg_port_uart_lines {
@@ -35,6 +45,24 @@ typedef struct epg_port_uart {
  * UART again.
  */
 bool epg_port_uart_start(const epg_port_uart_t *uart);
+
+#ifdef EPG_PORT_UART_BUFFER
+
+/** Takes up to `size` received bytes and returns their number. */
+size_t epg_port_uart_read(const epg_port_uart_t *uart, void *data, size_t size);
+
+#else
+
+/** Defines the buffer `name` for at least `size` received bytes. */
+#define EPG_PORT_UART_BUFFER(name, size) static unsigned char name[size]
+
+/** Takes up to `size` received bytes and returns their number. */
+static inline size_t epg_port_uart_read(const epg_port_uart_t *uart, void *data, size_t size)
+{
+    return epg_ring_read(&uart->lines->received, data, size);
+}
+
+#endif
 
 /** Starts the transmission of the bytes in `lines->sent`.  Called after bytes were put into that ring. */
 void epg_port_uart_send(const epg_port_uart_t *uart);
