@@ -1,36 +1,48 @@
 # SPDX-License-Identifier: Apache-2.0
 """The outputs become safe after each fault of the program; RP2040 images in the emulator.
 
-The bench has an H-bridge at a quarter of full duty (pins 2, 7, 8), and a lamp that is off when pin 15 is high.
+The bench has an H-bridge at a quarter of full duty (pins 2, 7, 8), and a lamp that is off when pin 15 is high.  It runs
+from flash.  From its first cycle on, core 1 must not access flash: the outputs become safe without it.
 """
 
 from __future__ import annotations
 
 import struct
 from collections.abc import Iterator
+from contextlib import contextmanager
 
 import pytest
 
-from tests.emulator.emulator import Emulator
+from tests.emulator.emulator import CYCLES_PER_MILLISECOND, Emulator
 from tests.platforms.pico.images import PLATFORMS, images, skip_unless_emulated
 
 VALUE, DIRECTION_A, DIRECTION_B, LAMP = 2, 7, 8, 15
 SAFE = {VALUE: 0, DIRECTION_A: 0, DIRECTION_B: 0, LAMP: 1}
-FAULT, PANIC, STUCK, ENABLE, DISABLE, FLASH, STOP, START = range(1, 9)
+FAULT, PANIC, STUCK, ENABLE, DISABLE, FLASH, STOP, START, _, OVERFLOW = range(1, 11)
 FAULT_NONE, FAULT_NOT_FINITE, FAULT_OVERRUN, FAULT_WATCHDOG, FAULT_PROCESSOR = 0, 1, 3, 11, 12
 WATCHDOG_MS, CORE0_TIMEOUT_MS = 100, 500
 MODEL = "bench_model_private_bench_"
 """EPG's prefix for the names of a model's own variables."""
+GUARD = "write that the MPU forbids"
+"""What the emulator says of a stack that has grown into its guard."""
 NOT_PERMITTED = -4
 """PICO_ERROR_NOT_PERMITTED."""
 
 
 @pytest.fixture(params=PLATFORMS)
 def pico(request: pytest.FixtureRequest) -> Iterator[Emulator]:
+    with driving(request.param) as emulator:
+        yield emulator
+
+
+@contextmanager
+def driving(platform: str) -> Iterator[Emulator]:
     """The bench after 20 ms, while it drives the motor."""
-    skip_unless_emulated(request.param)
-    with Emulator(images("pico", request.param, "user_bench") / "user_bench.elf") as emulator:
+    skip_unless_emulated(platform)
+    with Emulator(images("pico", platform, "user_bench") / "user_bench.elf", wait_states=True) as emulator:
         emulator.call("watch_pins", pins=[VALUE, DIRECTION_A, DIRECTION_B, LAMP])
+        emulator.run_until("sleep_between_ticks", core=1)
+        emulator.call("forbid_flash", core=1)
         emulator.run(milliseconds=20)
         assert status(emulator) == (True, FAULT_NONE)
         assert levels(emulator)[DIRECTION_A] == 1 and levels(emulator)[LAMP] == 0
@@ -76,9 +88,11 @@ def assert_stays_safe(pico: Emulator, milliseconds: float) -> None:
 def assert_reset_and_safe(pico: Emulator, fault: int, within: float) -> None:
     """The watchdog resets within this many ms.  Then everything runs, but disabled until a request to enable."""
     before = len(pico.run(cycles=1)["resets"])
-    state = pico.run(milliseconds=within)
-    assert len(state["resets"]) == before + 1, state
-    pico.run(milliseconds=20)
+    end = pico.cycle + within * CYCLES_PER_MILLISECOND
+    while len((state := pico.run(milliseconds=0.1))["resets"]) == before:
+        assert pico.cycle < end, state
+    pico.call("forbid_flash", core=1, forbidden=False)  # core 1 starts again, by code in flash
+    pico.run(milliseconds=25)
     assert status(pico) == (False, fault)
     assert_stays_safe(pico, 20)
     order(pico, ENABLE)
@@ -101,15 +115,40 @@ def test_outputs_are_safe_before_main() -> None:
 @pytest.mark.parametrize("what", [FAULT, PANIC])
 def test_a_fault_on_core_0(pico: Emulator, what: int) -> None:
     order(pico, what, milliseconds=1)
+    assert {fault["core"] for fault in pico.call("faults")} <= {0}
     assert_stays_safe(pico, 20)
     assert_reset_and_safe(pico, FAULT_PROCESSOR, within=WATCHDOG_MS)
 
 
 def test_a_fault_on_core_1(pico: Emulator) -> None:
     pico.write_word(MODEL + "fault", 1)
+    pico.call("take", log="pins")
     pico.run(milliseconds=1.1)
+    first, *later = pico.call("faults")
+    assert first["core"] == 1 and "flash" not in first["cause"]
+    last_edge = max(cycle for cycle, *_ in pico.call("take", log="pins"))
+    assert all(fault["cycle"] > last_edge for fault in later), "the SDK's handler, in flash, runs after EPG's"
     assert_stays_safe(pico, 20)
     assert_reset_and_safe(pico, FAULT_PROCESSOR, within=WATCHDOG_MS)
+
+
+@pytest.mark.parametrize("core", [0, 1])
+def test_a_stack_overflow(core: int) -> None:
+    """The fault stores registers in the stack.  If they hit its guard, too, the core locks up; the watchdog resets."""
+    with driving("bare_metal") as pico:
+        if core == 0:
+            order(pico, OVERFLOW, milliseconds=1)
+        else:
+            pico.write_word(MODEL + "depth", 1000)
+            pico.run(milliseconds=1.1)
+        faults = pico.call("faults")
+        assert (faults[0]["core"], faults[0]["cause"]) == (core, GUARD)
+        if any(fault["lockup"] and fault["cause"] == GUARD for fault in faults):
+            limit = WATCHDOG_MS + (CORE0_TIMEOUT_MS if core == 0 else 0)
+            assert_reset_and_safe(pico, FAULT_WATCHDOG, within=limit)
+        else:
+            assert_stays_safe(pico, 20)
+            assert_reset_and_safe(pico, FAULT_PROCESSOR, within=WATCHDOG_MS)
 
 
 def test_core_0_stuck(pico: Emulator) -> None:
@@ -127,6 +166,7 @@ def test_a_value_that_is_not_finite(pico: Emulator) -> None:
     pico.write_word(MODEL + "not_finite", 1)
     pico.run(milliseconds=1.1)
     assert_stays_safe(pico, 5)
+    assert pico.call("faults") == []
     assert status(pico) == (False, FAULT_NOT_FINITE)
 
 
@@ -160,7 +200,8 @@ def test_stop_and_start(pico: Emulator) -> None:
     order(pico, STOP)
     assert_stays_safe(pico, 250)
     assert pico.run(cycles=1)["resets"] == [], "the watchdog is off"
-    order(pico, START, milliseconds=10)
+    pico.call("forbid_flash", core=1, forbidden=False)
+    order(pico, START, milliseconds=15)
     assert pico.word("answer") == 1
     assert status(pico) == (True, FAULT_NONE)
     assert levels(pico)[DIRECTION_A] == 1

@@ -30,7 +30,8 @@ enum {
     ORDER_FLASH,
     ORDER_STOP,
     ORDER_START,
-    ORDER_STOP_WITHIN
+    ORDER_STOP_WITHIN,
+    ORDER_OVERFLOW
 };
 
 volatile uint32_t order;
@@ -43,6 +44,12 @@ static void write_flash(void *argument)
 {
     (void)argument;
     answer = 0;
+}
+
+static uint32_t deeper(uint32_t depth)
+{
+    volatile uint32_t space[24] = {depth};
+    return depth == 0U ? 0U : deeper(depth - 1U) + space[0];
 }
 
 static void obey(void)
@@ -81,6 +88,9 @@ static void obey(void)
         break;
     case ORDER_STOP_WITHIN:
         stops_within = true;
+        break;
+    case ORDER_OVERFLOW:
+        (void)deeper(1000U);
         break;
     default:
         break;

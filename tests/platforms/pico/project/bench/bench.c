@@ -6,6 +6,7 @@
 volatile uint32_t bench_loops; /* determines the duration of a step */
 volatile uint32_t bench_not_finite;
 volatile uint32_t bench_fault;
+volatile uint32_t bench_depth; /* calls of a function by itself, each with 100 bytes of stack or more */
 volatile double bench_duty = 0.25;
 
 void bench_init(const bench_inputs_t *inputs, bench_outputs_t *outputs)
@@ -13,6 +14,12 @@ void bench_init(const bench_inputs_t *inputs, bench_outputs_t *outputs)
     (void)inputs;
     outputs->duty = 0.0;
     outputs->lamp = 0.0;
+}
+
+static uint32_t deeper(uint32_t depth)
+{
+    volatile uint32_t space[24] = {depth};
+    return depth == 0U ? 0U : deeper(depth - 1U) + space[0];
 }
 
 void bench_step(const bench_inputs_t *inputs, bench_outputs_t *outputs)
@@ -23,6 +30,7 @@ void bench_step(const bench_inputs_t *inputs, bench_outputs_t *outputs)
     if (bench_fault != 0U) {
         *(volatile uint32_t *)0xF0000000U = 0;
     }
+    (void)deeper(bench_depth);
     outputs->duty = bench_not_finite != 0U ? 0.0 / (inputs->angle - inputs->angle) : bench_duty;
     outputs->lamp = 1.0;
 }
