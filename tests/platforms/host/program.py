@@ -44,7 +44,7 @@ def compile_program(
 
 def platform_sources(*, main: bool = True, system: str = "linux") -> list[Path]:
     """All sources of the runtime and the host platform, as the build system would compile them."""
-    folders = (RUNTIME / "src", HOST / "src", HOST / "src" / system)
+    folders = (RUNTIME / "src" / "control", RUNTIME / "src" / "communication", HOST / "src", HOST / "src" / system)
     sources = [source for folder in folders for source in sorted(folder.glob("*.c"))]
     return [source for source in sources if main or source.name != "main.c"]
 
