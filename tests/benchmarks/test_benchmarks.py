@@ -34,6 +34,7 @@ SMALLEST = {
     "pico_text": [],
     "setpoint_latency": ["--steps", "20", "--platforms", "1"],
     "teleoperation": ["--seeds", "1"],
+    "pico_polls": ["--milliseconds", "30", "--platforms", "1"],
     "pico_ping_pong": ["--pings", "5", "--flat", "20", "--platforms", "1", "--combinations", "1"],
     "network_situations": ["--only", "4", "--seconds", "3", "--systems", "0"],
     "xrce_round_trip": ["--count", "5"],

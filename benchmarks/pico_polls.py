@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Measures the longest time between two turns of communication on an RP2040 while USB and a UART are flooded.
+
+JIWY's images run from flash, in the emulator with the time of flash.  The ticks of core 1 are timed meanwhile.
+"""
+
+from __future__ import annotations
+
+import sys
+
+from measure import ROOT
+from report import Table, arguments, command_line, show
+
+sys.path.insert(0, str(ROOT))
+
+from tests.emulator.toolchain import Missing, arm_gcc, node, pico_sdk, rp2040js
+from tests.platforms.pico.images import freertos_kernel
+from tests.platforms.pico.polls.measure import Polls, measure_uart, measure_usb
+
+PLATFORMS = {"bare_metal": "bare metal", "freertos": "FreeRTOS"}
+
+
+def main() -> None:
+    options = arguments(__doc__, milliseconds=100, platforms=len(PLATFORMS))
+    try:
+        for need in (pico_sdk, arm_gcc, node, rp2040js, freertos_kernel):
+            need()
+    except Missing as missing:
+        raise SystemExit(str(missing)) from None
+    rows = [
+        row(title, polls)
+        for platform, title in list(PLATFORMS.items())[: options.platforms]
+        for measure in (measure_usb, measure_uart)
+        for polls in measure(platform, options.milliseconds)
+    ]
+    head = ["platform", "load", "turns", "longest, us", "ticks", "deviation of a tick, cycles"]
+    notes = [
+        "Longest: from the begin of a turn of communication to the begin of the next one. It is meant to be at most a "
+        "millisecond. Each line carries as many bytes as it can: USB 64 bytes in 45 to 105 us, the UART 460800 or 921600 "
+        "baud. A turn in which the diagnostics are written takes longest, once in a second.",
+        "Simulated, with the cache of the flash and the contention of the cores. From its start on, core 1 must not access "
+        "flash. The arithmetic is the compiler's, not the ROM's.",
+    ]
+    table = Table("Time between two turns of communication, RP2040, simulated", head, rows, notes)
+    show("pico_polls", [table], options.write, command_line("pico_polls"))
+
+
+def row(platform: str, polls: Polls) -> list[str]:
+    deviations = f"{min(polls.deviations)} ... {max(polls.deviations)}" if len(polls.deviations) > 1 else "0"
+    return [platform, polls.load, f"{polls.turns:,}", f"{polls.longest * 0.008:,.0f}", f"{polls.ticks:,}", deviations]
+
+
+if __name__ == "__main__":
+    main()
