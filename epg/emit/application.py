@@ -25,7 +25,7 @@ from epg.emit.macros import Macros
 from epg.emit.pins import pin_lists
 from epg.emit.ros_services import ros_services_of
 from epg.emit.service import MiddlewareView, service_of
-from epg.emit.symbols import TEMPLATES
+from epg.emit.symbols import TEMPLATES, constants
 from epg.emit.template import environment
 from epg.emit.text import CMakeCode, Code, DevicetreeCode, Escaped, KconfigCode, double, identifier
 from epg.emit.topics import Topics, topics_of
@@ -83,7 +83,8 @@ class Emitter:
     def _context(self) -> dict[str, Any]:
         """The variables that all templates of the application and its platform can use."""
         app = self.app
-        parts = [self._part(number, component) for number, component in enumerate(app.components)]
+        names = constants(app, "COMPONENT", [component.name for component in app.components])
+        parts = [self._part(name, component) for name, component in zip(names, app.components, strict=True)]
         publishers = {c.name for c in app.components if c.kind.communication == "publish"}
         drivers = {str(header) for component in app.components for header in component.kind.headers}
         headers = set(drivers)
@@ -96,10 +97,12 @@ class Emitter:
             "headers": sorted(headers),
             "driver_headers": sorted(drivers),
             "parts": parts,
-            "faults": sorted(
-                {fault for c in app.components for fault in c.kind.faults}, key=lambda fault: fault.number
-            ),
-            "numbers": {part.component.name: part.number for part in parts},
+            "faults": list(self.macros.faults.items()),
+            "numbers": {component.name: number for number, component in enumerate(app.components)},
+            "component_constants": {part.component.name: part.constant for part in parts},
+            "setpoint_constants": self._constants("subscribe"),
+            "published_constants": self._constants("publish"),
+            "signal_constants": constants(app, "SIGNAL", [*(signal.name for signal in service.signals), "time"]),
             "topics": self.topics(),
             "arrivals": self._arrivals("subscribe"),
             "departures": self._arrivals("publish"),
@@ -138,10 +141,20 @@ class Emitter:
             "plant_outputs": [self._plant_output(wire) for wire in plant.outputs] if plant else [],
         }
 
-    def _part(self, number: int, component: ResolvedComponent) -> Part:
+    def _constants(self, communication: str) -> list[Code]:
+        """The constants of all setpoints ("subscribe") or of all published values ("publish"), in their order."""
+        views = [self.macros.views[c.name] for c in self.app.components if c.kind.communication == communication]
+        return [
+            constant
+            for _, constant in sorted(
+                (v.value_index[port], name) for v in views for port, name in v.value_names.items()
+            )
+        ]
+
+    def _part(self, constant: Code, component: ResolvedComponent) -> Part:
         return Part(
             component=self.macros.views[component.name],
-            number=number,
+            constant=constant,
             globals=self.macros.macro(component, "globals"),
             start=_indented(self.macros.macro(component, "start")),
             sample=_indented(self.macros.macro(component, "sample")),

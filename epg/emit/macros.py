@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
 from typing import Any
 
 from jinja2 import Environment
 
+from epg.catalog.kind import KindFault
 from epg.diagnostics import Diagnostics, UserError
-from epg.emit.symbols import component_symbols
+from epg.emit.symbols import component_symbols, constants
 from epg.emit.template import CodeMacro, macro_mistake
 from epg.emit.text import Code, identifier
 from epg.emit.views import ComponentView, UseView, ValueView
@@ -24,6 +26,8 @@ class Macros:
         self.env = env
         self.modules: dict[str, Any] = {}
         self.symbols = component_symbols(app, env)
+        self.faults = fault_constants(app)
+        self.value_names = {**value_constants(app, "SETPOINT"), **value_constants(app, "PUBLISHED")}
         self.components = {component.name: component for component in app.components}
         self.views = {component.name: self._view(component) for component in app.components}
         self.views |= {name: replace(view, uses=self._uses(name)) for name, view in self.views.items()}
@@ -79,10 +83,11 @@ class Macros:
                 for port in component.kind.ports
                 if port.name in component.value_index
             ],
+            value_names=self.value_names.get(component.name, {}),
             application=identifier(self.app.name),
             period=self.app.period,
             write_period=self.app.period * self.app.step_divider,
-            faults={fault.name: fault.number for fault in component.kind.faults},
+            faults={fault.name: self.faults[fault] for fault in component.kind.faults},
         )
 
     def _uses(self, name: str) -> dict[str, UseView]:
@@ -106,3 +111,26 @@ class Macros:
     def safe_level(self, component: ResolvedComponent, claim: str) -> Code:
         """A C expression, true if the safe level of the claim's pins is high.  The default is ``false``."""
         return self.macro(component, "safe_level", claim).strip() or Code("false")
+
+
+def fault_constants(app: Application) -> dict[KindFault, Code]:
+    """The constant of each fault that the kinds of the components declare, in the order of their numbers."""
+    faults = sorted({fault for c in app.components for fault in c.kind.faults}, key=lambda fault: fault.number)
+    return dict(zip(faults, constants(app, "FAULT", [fault.name for fault in faults]), strict=True))
+
+
+def value_constants(app: Application, word: str) -> dict[str, dict[str, Code]]:
+    """The constants of setpoints (``word`` is SETPOINT) or published values (PUBLISHED), by component and port."""
+    direction = {"SETPOINT": "subscribe", "PUBLISHED": "publish"}[word]
+    values = sorted(
+        (index, component.name, port)
+        for component in app.components
+        if component.kind.communication == direction
+        for port, index in component.value_index.items()
+    )
+    alone = Counter(component for _, component, _ in values)
+    names = [component if alone[component] == 1 else f"{component}_{port}" for _, component, port in values]
+    result: dict[str, dict[str, Code]] = {}
+    for (_, component, port), constant in zip(values, constants(app, word, names), strict=True):
+        result.setdefault(component, {})[port] = constant
+    return result

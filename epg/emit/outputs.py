@@ -28,7 +28,7 @@ def application_outputs(app: Application, roots: Sequence[Path], names: PathName
         parts.append((app.plant.model, f"{app.name}_plant", app.plant.parameters))
     builds = []
     for model, name, parameters in parts:
-        files |= emit_model(model, name, parameters)
+        files |= emit_model(model, name, parameters, terminate=False)
         builds.append((name, model_build(model, name, parameters)))
     hash = application_hash(app, files)
     files = {name: text.replace(PLACE, hash) for name, text in files.items()}

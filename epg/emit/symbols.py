@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 
 from jinja2 import Environment
@@ -11,6 +13,9 @@ from jinja2 import Environment
 from epg.catalog.kind import TEMPLATE
 from epg.emit.text import Code, identifier
 from epg.resolve.application import Application
+
+CONSTANTS = ("COMPONENT", "SETPOINT", "PUBLISHED", "SIGNAL", "FAULT")
+"""The second words of the constants in ``<name>_app.c``: ``JIWY_COMPONENT_PWM_PAN``."""
 
 TEMPLATES = Path(__file__).resolve().parent / "templates"
 
@@ -29,10 +34,26 @@ def component_symbols(app: Application, env: Environment) -> dict[str, Code]:
         symbol = component.name
         if f"{symbol}_".casefold().startswith(("model_", "plant_", "get_", "set_")):
             symbol += "_component"  # the library of the model or of the plant; the functions for the user's program
+        if symbol.startswith(tuple(f"{word}_" for word in CONSTANTS)):
+            symbol = f"component_{symbol}"
         while symbol in beginnings or f"{app.name}_{symbol}" in taken:
             symbol += "_component"
         result[component.name] = identifier(f"{app.name}_{symbol}")
     return result
+
+
+def constants(app: Application, word: str, names: Sequence[str]) -> list[Code]:
+    """C constants for ``names``: ``JIWY_COMPONENT_PWM_PAN``.  Names that differ only in case keep their case."""
+    beginning = f"{app.name}_{word}".upper()
+    kept = [re.sub(r"\W", "_", name) for name in names]
+    counts = Counter(name.upper() for name in kept)
+    result: dict[str, None] = {}  # a set that keeps its order
+    for name in kept:
+        constant = f"{beginning}_{name.upper() if counts[name.upper()] == 1 else name}"
+        while constant in result:
+            constant += "_"
+        result[constant] = None
+    return [identifier(constant) for constant in result]
 
 
 def _words_of_templates(app: Application, env: Environment) -> set[str]:

@@ -45,6 +45,7 @@ class ComponentView:
     ``period`` is the control period, ``write_period`` the time between two writes of actuators, both in seconds.
     ``values`` are the values of the component's topic in the order of the message.  ``value_index`` has their value
     indices by port, and ``first_index`` is the first of them; it is None for a component without a topic.
+    ``value_names`` are the constants of these indices, by port, and ``faults`` those of the kind's faults, by name.
     """
 
     name: str
@@ -57,8 +58,9 @@ class ComponentView:
     write_period: Fraction
     value_index: Mapping[str, int] = field(default_factory=dict)
     values: Sequence[ValueView] = ()
+    value_names: Mapping[str, Code] = field(default_factory=dict)
     uses: Mapping[str, UseView] = field(default_factory=dict)
-    faults: Mapping[str, int] = field(default_factory=dict)  # name -> number in C
+    faults: Mapping[str, Code] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,7 @@ class Part:
     """The code that one component contributes to each place of the generation order."""
 
     component: ComponentView
-    number: int
+    constant: Code  # the component's index
     globals: Code
     start: Code
     sample: Code

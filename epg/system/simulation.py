@@ -110,7 +110,7 @@ def simulation_outputs(
         model, parameters = checked.plant.model, checked.plant.parameters
         name = plant_library(program)
         library = name, model, model_build(model, name, parameters)
-        files |= emit_model(model, name, parameters)
+        files |= emit_model(model, name, parameters, terminate=False)
         used |= {*model.files, system.plant.bindings}
     cmake = system_cmake(program, sorted(used), [target.name for target in targets], library, files, names)
     return with_licence({**files, f"{program}.cmake": cmake})

@@ -33,12 +33,19 @@ __all__ = ["ModelBuild", "emit_model", "model_build"]
 
 
 def emit_model(
-    model: Model, name: str, parameters: Mapping[str, float] | None = None, instances: int = 1
+    model: Model,
+    name: str,
+    parameters: Mapping[str, float] | None = None,
+    instances: int = 1,
+    *,
+    terminate: bool = True,
 ) -> dict[str, str]:
     """The generated files of ``model`` as the library ``name``: file name to text.
 
     ``parameters`` holds new values by the names of 20-sim.  They replace the exported values as if the model had been
     exported with them, so that the first initial equation already uses them.
+
+    Without ``terminate``, the library lacks ``<name>_terminate()``, which a target never calls.
 
     ``name`` must be a C identifier.  Each name in ``parameters`` must be a parameter of the model.  ``instances`` must
     be 1 unless ``model.instantiable``.  Raises ValueError otherwise; callers must check before.
@@ -49,7 +56,7 @@ def emit_model(
         raise ValueError(f"{model.name} has no parameter {unknown[0]!r}")
     if instances < 1 or (instances > 1 and not model.instantiable):
         raise ValueError(f"{model.name} cannot have {instances} instances")
-    files = render(model, name, values, instances)
+    files = render(model, name, values, instances, terminate)
     files |= copies(model, name, values)
     files |= shims(model, name)
     return files

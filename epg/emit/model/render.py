@@ -22,7 +22,7 @@ from epg.models.link import Linked
 from epg.models.model import Model, Parameter, Port
 
 
-def render(model: Model, name: str, values: Mapping[str, float], instances: int) -> dict[str, str]:
+def render(model: Model, name: str, values: Mapping[str, float], instances: int, terminate: bool) -> dict[str, str]:
     """The text of all files of the library that are made from templates, by file name."""
     common: dict[str, Any] = {
         "model": model,
@@ -31,6 +31,10 @@ def render(model: Model, name: str, values: Mapping[str, float], instances: int)
         "parameters": list(zip(parameter_constants(name, model.parameters), model.parameters)),
         "tunable": sum(parameter.tunable for parameter in model.parameters),
         "derives": _derives(model),
+        "terminate": terminate,
+        # These exports write all their outputs in each call.  Others can leave outputs as they are.
+        "direct": isinstance(model.details, CFunctionExport | TokensExport),
+        "in_order": all(parameter.index == index for index, parameter in enumerate(model.parameters)),
         "e": model.details,
         "hand_written": isinstance(model.details, HandWritten),
         "fmu": isinstance(model.details, FmuExport),
@@ -44,7 +48,9 @@ def render(model: Model, name: str, values: Mapping[str, float], instances: int)
     }
     details = model.details
     if isinstance(details, CFunctionExport):
-        files[f"{name}_export.c"] = env.get_template("c_function.c.j2").render(common | _c_function(model, details))
+        files[f"{name}_export.c"] = env.get_template("c_function.c.j2").render(
+            common | _c_function(model, details, terminate)
+        )
         files[f"{name}_names.h"] = env.get_template("names.h.j2").render(common, renames=details.renames)
     elif isinstance(details, CppClassExport):
         context = common | _cpp_class(model, details, name, values)
@@ -133,8 +139,15 @@ def _told(item: Port | Parameter) -> Code:
     return comment(f"{item.name}{unit}{kind}{value}{told}")
 
 
-def _c_function(model: Model, details: CFunctionExport) -> dict[str, Any]:
+def _c_function(model: Model, details: CFunctionExport, terminate: bool) -> dict[str, Any]:
     """The template variables of ``c_function.c.j2``."""
+    doubles = details.real == "double"
+    context = {
+        "entries": [entry for entry in _entries(details) if terminate or entry is not details.terminate],
+        "to_real": Code("" if doubles else f"({details.real})"),
+        "to_double": Code("" if doubles else "(double)"),
+        "copied": not doubles or bool(details.outputs) or not model.outputs,
+    }
     declared = {variable.name for variable in details.variables}
     states = [array for array in (details.states, details.rates) if array] if details.state_count else []
     elements = [element.array for element in (*details.inputs, *details.outputs)]
@@ -144,8 +157,7 @@ def _c_function(model: Model, details: CFunctionExport) -> dict[str, Any]:
         # an FMU, the members are pointers into one common memory, which has all arrays.  In an export by EPG's target
         # for 20-sim, they are arrays, and only those that the model needs exist.
         members = [name for name, _ in details.memory] or ["s", "R"]
-        return {
-            "entries": _entries(details),
+        return context | {
             "pointers": (),
             "unsized": (),
             "own_time": False,
@@ -153,8 +165,7 @@ def _c_function(model: Model, details: CFunctionExport) -> dict[str, Any]:
             "states": [Code(f"epg_models[index].{member}") for member in ("s", "R") if states and member in members],
             "parameter_array": Code("epg_models[index].P"),
         }
-    return {
-        "entries": _entries(details),
+    return context | {
         "pointers": sorted(wanted & set(details.pointers)),
         "unsized": sorted(wanted - set(details.pointers) - declared),
         "own_time": details.time not in declared,
