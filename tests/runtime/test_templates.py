@@ -211,11 +211,12 @@ class Renderer:
             first_index=component.first_index,
             value_index=value_index,
             values=values,
+            value_names={port: Code(str(index)) for port, index in value_index.items()},
             application=Code("app"),
             period=Fraction(1, 1000),
             write_period=Fraction(1, 1000),
             uses=component.uses,
-            faults={fault.name: fault.number for fault in kind.faults},
+            faults={fault.name: Code(str(fault.number)) for fault in kind.faults},
         )
         env = environment([TARGETS])
         template = env.get_template(f"components/{kind.name}/code.c.j2")
