@@ -26,6 +26,7 @@
 #include <stdint.h>
 
 #include "epg/fault.h"
+#include "epg/soft_double.h"
 
 typedef struct epg_motion_guard_config {
     struct {
@@ -85,7 +86,7 @@ static inline void epg_motion_guard_begin(epg_motion_guard_t *guard, double angl
 /** Returns the direction of the drive: 1, -1, or 0 if the duty is smaller than `least`. */
 static inline int8_t epg_motion_guard_direction(double duty, double least)
 {
-    return (int8_t)(duty >= least ? 1 : duty <= -least ? -1 : 0);
+    return (int8_t)(epg_at_most(least, duty) ? 1 : epg_at_most(duty, -least) ? -1 : 0);
 }
 
 /**
@@ -98,7 +99,7 @@ static inline bool epg_motion_guard_stalls(epg_motion_guard_t *guard, const epg_
                                            double angle, double duty)
 {
     const double moved = angle - guard->stall_origin;
-    if (moved >= config->stall.angle || moved <= -config->stall.angle) {
+    if (epg_at_most(config->stall.angle, moved) || epg_at_most(moved, -config->stall.angle)) {
         guard->stall_origin = angle;
         guard->stalled = 0;
         return false;
@@ -121,20 +122,21 @@ static inline bool epg_motion_guard_runs_away(epg_motion_guard_t *guard, const e
                                               double angle, double duty)
 {
     const int8_t direction = epg_motion_guard_direction(duty, config->runaway.duty);
-    const double against = direction > 0 ? guard->best - angle : angle - guard->best;
-    if (direction == 0 || direction != guard->direction || against <= 0.0) {
+    if (direction == 0 || direction != guard->direction ||
+        (direction > 0 ? epg_at_most(guard->best, angle) : epg_at_most(angle, guard->best))) {
         guard->direction = direction;
         guard->best = angle;
         guard->cycles = 0;
         guard->half_cycles = 0;
         return false;
     }
+    const double against = direction > 0 ? guard->best - angle : angle - guard->best;
     guard->cycles++;
-    if (guard->half_cycles == 0 && against >= 0.5 * config->runaway.angle) {
+    if (guard->half_cycles == 0 && epg_at_most(0.5 * config->runaway.angle, against)) {
         guard->half_cycles = guard->cycles;
         guard->half_travelled = against;
     }
-    if (against < config->runaway.angle) {
+    if (epg_less(against, config->runaway.angle)) {
         return false;
     }
     const double first = guard->half_travelled * (double)(guard->cycles - guard->half_cycles);
@@ -148,10 +150,10 @@ static inline epg_fault_t epg_motion_guard_homes(epg_motion_guard_t *guard, cons
                                                  double angle, double duty)
 {
     const double travelled = angle - guard->homing_origin;
-    if (travelled > config->homing.travel || travelled < -config->homing.travel) {
+    if (epg_less(config->homing.travel, travelled) || epg_less(travelled, -config->homing.travel)) {
         return config->faults.homing_travel;
     }
-    if (duty < 0.0 || duty > 0.0) {
+    if (epg_less(duty, 0.0) || epg_less(0.0, duty)) {
         guard->driven++;
     }
     return guard->driven > config->homing.cycles ? config->faults.homing_time : EPG_FAULT_NONE;

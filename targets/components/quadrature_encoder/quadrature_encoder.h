@@ -21,6 +21,7 @@
 #include "epg/fault.h"
 #include "epg/finite.h"
 #include "epg/port.h"
+#include "epg/soft_double.h"
 
 typedef struct epg_quadrature_encoder_config {
     epg_port_quadrature_t decoder;
@@ -58,17 +59,17 @@ static inline void epg_quadrature_encoder_sample(epg_quadrature_encoder_t *encod
     /* The difference modulo 2^32 as a signed number (two's complement, as with every supported compiler). */
     encoder->counts += (int32_t)(count - encoder->last_count);
     encoder->last_count = count;
-    encoder->position = encoder->origin + (double)encoder->counts * config->rad_per_count;
+    encoder->position = epg_scaled(encoder->counts, config->rad_per_count, encoder->origin);
 }
 
 /**
- * Takes the reset signal.  When it rises above 0.5, the angle that was sampled last becomes `preset`.  The decoder
+ * Takes the reset signal, which must not be NaN.  When it rises above 0.5, the angle that was sampled last becomes `preset`.  The decoder
  * continues to count, so the counts since that sample are not lost.  `position` changes with the next sample.
  */
 static inline void epg_quadrature_encoder_reset(epg_quadrature_encoder_t *encoder,
                                                 const epg_quadrature_encoder_config_t *config, double signal)
 {
-    const bool level = signal > 0.5;
+    const bool level = epg_less(0.5, signal);
     if (level && !encoder->reset_level) {
         encoder->counts = 0;
         encoder->origin = config->preset;

@@ -163,8 +163,8 @@ static void __not_in_flash_func(on_wrap)(void)
     if (epg_control_silence(loop.control) < loop.silence_limit) {
         feed_watchdog();
     }
-    const uint32_t request = atomic_load(&hold_request);
-    if (request != 0U || atomic_load(&state) != STATE_RUNNING) {
+    const uint32_t request = atomic_load_explicit(&hold_request, memory_order_relaxed);
+    if (request != 0U || atomic_load_explicit(&state, memory_order_relaxed) != STATE_RUNNING) {
         answer(request);
     }
 }

@@ -21,6 +21,7 @@
 #include <stdint.h>
 
 #include "epg/finite.h"
+#include "epg/soft_double.h"
 
 /** The state of a bridge. */
 typedef enum epg_bridge_state {
@@ -75,9 +76,9 @@ static inline bool epg_bridge_command(epg_bridge_t *bridge, const epg_bridge_con
         epg_bridge_make_safe(bridge, config, clocks);
         return true;
     }
-    const bool negative = duty < 0.0;
+    const bool negative = epg_less(duty, 0.0);
     const double asked = negative ? -duty : duty;
-    const bool limited = asked > config->max_duty;
+    const bool limited = epg_less(config->max_duty, asked);
     const double magnitude = limited ? config->max_duty : asked;
     const uint32_t level = (uint32_t)(magnitude * (double)clocks + 0.5);
     const epg_bridge_state_t direction = negative == config->invert ? EPG_BRIDGE_FORWARDS : EPG_BRIDGE_BACKWARDS;

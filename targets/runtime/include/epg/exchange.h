@@ -63,7 +63,8 @@ bool epg_exchange_take(epg_exchange_t *exchange, void *value);
 /** Returns true if epg_exchange_take() would give a value.  Only the reader may call it; costs less than that call. */
 static inline bool epg_exchange_has_news(epg_exchange_t *exchange)
 {
-    return atomic_load(&exchange->writes) != exchange->taken;
+    /* epg_exchange_take() orders its reads itself. */
+    return atomic_load_explicit(&exchange->writes, memory_order_relaxed) != exchange->taken;
 }
 
 #endif

@@ -39,10 +39,16 @@ void epg_control_start(epg_control_t *control, const epg_application_t *applicat
     application->safe(); /* the first level of a peripheral need not be the safe one */
 }
 
+/** A word of the communication side that stands for itself: no other memory is read because of its value. */
+static inline unsigned int newest(atomic_uint *word)
+{
+    return atomic_load_explicit(word, memory_order_relaxed);
+}
+
 /** Lets the accesses of the user's program act at a point.  Returns true if one of them returns true. */
 static inline bool reach(epg_control_t *control, epg_access_point_t point)
 {
-    epg_access_t *const accesses = atomic_load(&control->accesses);
+    epg_access_t *const accesses = atomic_load_explicit(&control->accesses, memory_order_acquire);
     return accesses != NULL && accesses->reach(accesses, control, point);
 }
 
@@ -79,7 +85,7 @@ static void clear_fault(epg_control_t *control)
 /** Carries out a new request.  `permitted` is true if the fail-safe input allows enabling. */
 static void handle_request(epg_control_t *control, bool permitted, uint64_t now_ns)
 {
-    const unsigned int request = atomic_load(&control->request);
+    const unsigned int request = newest(&control->request);
     if (request == control->request_seen) {
         return;
     }
@@ -111,7 +117,7 @@ static void command(epg_control_t *control, const epg_application_t *application
         taken = true;
     }
     const bool refused = application->fail_safe != NULL && !application->fail_safe();
-    if (atomic_load(&control->reset)) {
+    if (atomic_load_explicit(&control->reset, memory_order_relaxed)) {
         atomic_store(&control->reset, false); /* first, so that a request during this cycle is not lost */
         clear_fault(control);
     }
@@ -236,13 +242,13 @@ static bool count_cycle(epg_control_t *control, uint64_t next_ns, uint64_t begin
 /** Counts the cycles since the communication side was alive.  If it was alive now, copies its report of the stacks. */
 static void count_silence(epg_control_t *control)
 {
-    const unsigned int alive = atomic_load(&control->alive);
+    const unsigned int alive = newest(&control->alive);
     if (alive != control->alive_seen) {
         control->alive_seen = alive;
         control->silence = 0;
         for (unsigned int i = 0; i < EPG_STACKS; i++) {
-            control->statistics.stacks[i].used = atomic_load(&control->stacks[i].used);
-            control->statistics.stacks[i].size = atomic_load(&control->stacks[i].size);
+            control->statistics.stacks[i].used = newest(&control->stacks[i].used);
+            control->statistics.stacks[i].size = newest(&control->stacks[i].size);
         }
     } else if (alive != 0U && control->silence < UINT32_MAX) {
         control->silence++;
@@ -254,9 +260,9 @@ static void count_silence(epg_control_t *control)
 
 static void publish_status(epg_control_t *control)
 {
-    control->statistics.reconnects = atomic_load(&control->reconnects);
+    control->statistics.reconnects = newest(&control->reconnects);
     epg_exchange_write(&control->status_exchange, &control->status);
-    if (atomic_load(&control->observed)) {
+    if (atomic_load_explicit(&control->observed, memory_order_relaxed)) {
         epg_exchange_write(&control->observer_exchange, &control->status);
     }
 }
@@ -297,7 +303,7 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
             epg_history_add(application->history, application->monitor_values);
         }
     }
-    control->statistics.setpoints_dropped = atomic_load(&control->dropped);
+    control->statistics.setpoints_dropped = newest(&control->dropped);
     reach(control, stepped ? EPG_ACCESS_STEPPED : EPG_ACCESS_RESTED);
     if (application->capture != NULL) {
         epg_capture_cycle(application->capture, tick_ns, control->fault != EPG_FAULT_NONE);
