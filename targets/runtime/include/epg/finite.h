@@ -21,7 +21,7 @@ static inline bool epg_is_finite(double value)
 {
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
-    return (bits >> 52 & 0x7FFU) != 0x7FFU;
+    return (uint32_t)(bits >> 32) << 1 < 0xFFE00000U; /* without the sign, the exponent has the highest bits */
 }
 
 /** Stores `value` in `*place` if it is finite.  Otherwise (a conversion overflowed) `*place` keeps its value. */
