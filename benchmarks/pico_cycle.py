@@ -7,6 +7,8 @@ RP2350: EPG's image on an emulated Cortex-M33, which counts instructions but not
 
 from __future__ import annotations
 
+import re
+import subprocess
 import sys
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
@@ -29,12 +31,13 @@ from tests.platforms.pico.rp2350.cortex_m33 import COMPILER_ARITHMETIC, RETURN, 
 from tests.platforms.pico.rp2350.profile import cycles, start
 from tests.platforms.pico.timing.programs import PROJECT, Program, by_hand, generated
 
+WAIT = "epg_port_wait_until"
 CALCULATE = "XXCalculateSubmodel"
 GENERATED = {
     "inputs": ("sample", "read_sources", "inputs_finite"),
     "model": (f"jiwy_33_model_private_{CALCULATE}",),
     "outputs": ("prepare_actuators", "write_actuators"),
-    "output delay": ("epg_port_wait_until",),
+    "output delay": (WAIT,),
 }
 HANDWRITTEN = {"inputs": ("read_inputs",), "model": (CALCULATE,), "outputs": ("write_outputs",)}
 BORDER = 1.1
@@ -68,7 +71,8 @@ def main() -> None:
         "by hand": (by_hand("by_hand_wrap_core1"), HANDWRITTEN),
     }
     costs = {title: rp2040(program, parts, options.cycles) for title, (program, parts) in programs.items()}
-    tables = [rp2040_table(costs, options.cycles), rp2350_table(options.cycles), size_table()]
+    tables = [rp2040_table(costs, options.cycles), unused_table(options.cycles)]
+    tables += [rp2350_table(options.cycles), size_table()]
     show("pico_cycle", tables, options.write, command_line("pico_cycle"))
 
 
@@ -127,6 +131,66 @@ def of(part: str, numbers: Mapping[str, float]) -> float:
     if part == "rest":
         return of("beside the model", numbers) - numbers["inputs"] - numbers["outputs"]
     return numbers[part]
+
+
+# What nobody uses -----------------------------------------------------------------------------------------------------
+
+
+UNUSED = {
+    "parameters unchanged": "parameters",
+    "capture not armed": "capture",
+    "nothing moved by hand": "jog",
+    "no new setpoint": "setpoint_exchange",
+}
+"""For each function of a target that a cycle does not use: the member of `epg_application_t` that switches it on."""
+OBSERVER = "console closed"
+COPY = "epg_exchange_write"
+UNUSED_BORDER = 3.0
+
+
+def unused_table(count: int) -> Table:
+    """The time of each function that a cycle does not use: the difference to a target that does not have it."""
+    program = generated("bare_metal", 33)
+
+    def measured(without: Sequence[str]) -> tuple[float, float]:
+        """Microseconds of a cycle, and of its copy for the console: the third one."""
+        with Emulator(program.image(), usb={"seed": 1}) as pico:
+            connect(pico, {"pan": 0.12, "tilt": 0.12})
+            pico.run(milliseconds=HOMED)
+            for title in without:
+                pico.call("write", at="application", offset=offset("epg_application_t", UNUSED[title]), hex="00" * 4)
+            for name in (program.tick, WAIT, COPY):
+                pico.call("watch_span", name=name, core=program.core, **{"from": name, "to": "return"})
+            pico.run(milliseconds=count)
+            spans = [pico.call("span", name=name)["passages"] for name in (program.tick, WAIT, COPY)]
+        whole, waits, copies = ([0.008 * passage[1] for passage in passages] for passages in spans)
+        assert len(copies) == 3 * len(whole), "a cycle copies monitoring values, its status, and this for the console"
+        return (sum(whole) - sum(waits)) / len(whole), fmean(copies[2::3])
+
+    base, observer = measured([])
+    rows = [[title, f"{base - measured([title])[0]:.2f}"] for title in UNUSED]
+    together = base - measured(list(UNUSED))[0] + observer
+    rows += [[OBSERVER, f"{observer:.2f}"], ["together", f"{together:.2f}"]]
+    judged = "holds" if together <= UNUSED_BORDER else "does not hold"
+    notes = [
+        f"Aim: together at most {UNUSED_BORDER:g} us: {judged} ({together:.2f} us).",
+        f"The first rows are differences between the image and the image without this function, in {count} cycles at "
+        "rest. Console closed: the copy of the status, which the console and services of ROS 2 read.",
+    ]
+    return Table("What a control cycle does not use, RP2040, simulated", ["function", "us"], rows, notes)
+
+
+def offset(type_: str, member: str) -> int:
+    """The offset of a member in a type of the runtime, on a Cortex-M0+."""
+    include = ROOT / "targets" / "runtime" / "include"
+    source = (
+        f'#include <stddef.h>\n#include "epg/control.h"\nconst unsigned int found = offsetof({type_}, {member}) + 1;\n'
+    )
+    options = ["-mcpu=cortex-m0plus", "-mthumb", "-std=c11", f"-I{include}", "-x", "c", "-S", "-o", "-", "-"]
+    done = subprocess.run([str(arm_gcc()), *options], input=source, capture_output=True, text=True, check=True)
+    found = re.search(r"^\s+\.word\s+(\d+)$", done.stdout, re.MULTILINE)
+    assert found is not None, done.stdout
+    return int(found[1]) - 1
 
 
 # RP2350 ---------------------------------------------------------------------------------------------------------------

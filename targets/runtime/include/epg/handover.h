@@ -47,7 +47,8 @@ static inline void epg_handover_clear(epg_handover_t *handover)
 /** For the taker: true while the block belongs to the taker. */
 static inline bool epg_handover_there(epg_handover_t *handover)
 {
-    return atomic_load(&handover->given) != atomic_load(&handover->returned);
+    return atomic_load_explicit(&handover->returned, memory_order_relaxed) !=
+           atomic_load_explicit(&handover->given, memory_order_acquire);
 }
 
 /** For the taker: returns the block.  Must be called only while it belongs to the taker. */

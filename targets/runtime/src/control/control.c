@@ -177,7 +177,14 @@ static bool run_model(epg_control_t *control)
 /** Drives the actuator that is moved by hand.  Returns true if there is one; the model must not be stepped then. */
 static bool move_by_hand(epg_control_t *control, epg_jog_t *jog)
 {
-    if (jog == NULL || !epg_jog_cycle(jog, control->enabled)) {
+    if (jog == NULL) {
+        return false;
+    }
+    if (!epg_handover_there(&jog->handover)) {
+        jog->stop = false;
+        return false;
+    }
+    if (!epg_jog_cycle(jog, control->enabled)) {
         return false;
     }
     /* Initialise the model after the movement.  A model that stopped after a fault stays stopped. */
@@ -278,7 +285,7 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
     control->time_ns = tick_ns;
     command(control, application, begin_ns);
     application->read();
-    if (application->parameters != NULL) {
+    if (application->parameters != NULL && epg_handover_there(&application->parameters->handover)) {
         epg_parameters_apply(application->parameters, control->model_valid);
     }
     const bool jogging = move_by_hand(control, application->jog);
@@ -305,7 +312,7 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
     }
     control->statistics.setpoints_dropped = newest(&control->dropped);
     reach(control, stepped ? EPG_ACCESS_STEPPED : EPG_ACCESS_RESTED);
-    if (application->capture != NULL) {
+    if (application->capture != NULL && epg_handover_there(&application->capture->handover)) {
         epg_capture_cycle(application->capture, tick_ns, control->fault != EPG_FAULT_NONE);
     }
 
