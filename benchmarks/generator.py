@@ -26,7 +26,7 @@ PICO = "epg generate, Pico 2, new folder"
 HOST = "epg generate, host with plant, new folder"
 EDIT = "epg generate, host with plant, one value edited"
 UNCHANGED = "epg generate, host with plant, nothing changed"
-BORDER = 20.0
+BORDER = 14.0
 
 
 def main() -> None:

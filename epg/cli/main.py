@@ -29,6 +29,7 @@ COMMANDS = {
     "generate": "write the sources of a target (CMake calls this)",
     "generate-model": "write the library of one model (CMake calls this)",
     "generate-system": "write the simulation of a system (CMake calls this)",
+    "generate-all": "write the files of several targets (CMake calls this)",
     "bind": "write bindings for the ports whose names match",
     "ports": "list the ports and parameters of a model",
     "exported": "check an export of 20-sim and print the next steps (EPG's target for 20-sim calls this)",

@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
+import subprocess
 import sys
 import time
 from collections.abc import Callable
@@ -310,3 +312,62 @@ def test_a_model_around_the_build_folder_does_not_configure_without_end(tmp_path
     project._run([*command, "-S", str(source), "-B", str(source)], True)
     project._run(["cmake", "--build", str(source)], True)
     assert "Configuring" not in project._run(["cmake", "--build", str(source)], True)
+
+
+def test_one_start_of_python_is_enough_for_all_that_changed(tmp_path: Path) -> None:
+    watched = Watched(tmp_path, "models")
+    examples = f"-DEXAMPLES={shutil.copytree(ROOT / 'examples', tmp_path / 'examples')}"
+    watched.configure(examples)
+    assert watched.configure(examples) == 0
+    before = {path: path.read_bytes() for path in watched.outputs.rglob("*") if path.is_file()}
+    for source in (tmp_path / "examples" / "jiwy/model").glob("xxmodel.c"):  # first and second
+        source.write_text(source.read_text() + "\n/* edited */\n")
+    watched.replace("../robot/model/controller.c", "0.0", "0.5")  # by_hand
+    for damaged in ("first", "by_hand"):
+        (watched.outputs / damaged / f"{damaged}.h").unlink()
+    assert watched.configure(examples) == 1
+    assert {path: path.read_bytes() for path in watched.outputs.rglob("*") if path.is_file()} == before
+    assert watched.configure(examples) == 0
+
+
+def test_a_mistake_of_a_target_that_another_start_generates_is_reported(tmp_path: Path) -> None:
+    watched = Watched(tmp_path, "models")
+    examples = f"-DEXAMPLES={shutil.copytree(ROOT / 'examples', tmp_path / 'examples')}"
+    watched.configure(examples)
+    (watched.outputs / "first" / "first.h").unlink()
+    watched.replace("../robot/model/model.yaml", "step: 1 ms", "stepp: 1 ms")
+    assert watched.configure(examples, check=False) == 2
+    assert watched.output.count("error: unknown key 'stepp'") == 1
+    assert "model 'by_hand' was not generated" in watched.output
+    # Without the call, its mistake is not reported.
+    watched.replace("../robot/model/model.yaml", "stepp: 1 ms", "step: 1 ms")
+    assert watched.configure(examples) == 1
+    watched.replace("../robot/model/model.yaml", "step: 1 ms", "stepp: 1 ms")
+    text = (watched.project.source / "CMakeLists.txt").read_text(encoding="utf-8")
+    text = text.replace("epg_add_model(by_hand MODEL ../robot/model)\n", "").replace(" EPG::by_hand", "")
+    watched.write(watched.project.source / "CMakeLists.txt", text)
+    (watched.outputs / "first" / "first.h").unlink()
+    assert watched.configure(examples) == 1
+    assert "stepp" not in watched.output
+    assert watched.configure(examples) == 0
+
+
+def test_the_generator_imports_nothing_that_the_stamp_leaves_out(tmp_path: Path) -> None:
+    text = (ROOT / "cmake" / "EPGGenerate.cmake").read_text(encoding="utf-8")
+    found = re.search(r'EXCLUDE REGEX "/epg/\((.*)\)/"', text)
+    assert found
+    situation = ROOT / "examples" / "network_situations" / "situation_1.system.yaml"
+    jiwy = ROOT / "examples" / "jiwy"
+    target = ["--tcf", "host_jiwy.tcf", "--model", str(jiwy / "model"), "--bindings", str(jiwy / "jiwy.bindings.yaml")]
+    runs = [
+        ["generate", "jiwy", *target],
+        ["generate-model", "jiwy", "--model", str(jiwy / "model")],
+        ["generate-system", "system", "--system", str(situation)],
+    ]
+    code = "import sys\nfrom epg.cli.main import main\nassert main() == 0\nprint(*sys.modules)"
+    for run in runs:
+        command = [sys.executable, "-c", code, *run, "--output", str(tmp_path / run[0])]
+        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+        imported = {name.split(".")[1] for name in done.stdout.split() if name.startswith("epg.")}
+        assert "emit" in imported
+        assert imported.isdisjoint(found[1].split("|"))
