@@ -20,7 +20,7 @@ sys.path.insert(0, str(ROOT))
 
 from tests.emulator.emulator import Emulator
 from tests.emulator.toolchain import Missing, arm_gcc, node, pico_sdk, rp2040js
-from tests.platforms.pico.images import freertos_kernel, images, size_of
+from tests.platforms.pico.images import freertos_kernel, images, ram_of, size_of
 from tests.platforms.pico.micro_ros.firmware import VARIABLE
 from tests.platforms.pico.micro_ros.firmware import firmware as micro_ros_firmware
 from tests.platforms.pico.xrce.agent import BoardAgent
@@ -39,8 +39,8 @@ TARGETS = {
     ("pico2", "bare_metal"): "Pico 2, bare metal",
     ("pico2", "freertos"): "Pico 2, FreeRTOS",
 }
-RAM = {"pico": 256 * 1024, "pico2": 512 * 1024}
-"""Bytes of RAM for images and the user's data: the SRAM without the two banks for stacks."""
+RAM = {"pico": 264 * 1024, "pico2": 520 * 1024}
+"""Bytes of SRAM."""
 COMMANDS = ("help", "ports", "stats", "get", "watch", "capture 1")
 
 
@@ -53,11 +53,12 @@ def main() -> None:
         raise SystemExit(str(missing)) from None
     chosen = list(TARGETS)[: options.targets]
     rows = [row(*target, middleware) for target in chosen for middleware in MIDDLEWARES if possible(target, middleware)]
-    head = ["image", "middleware", "text", "data", "bss", "of RAM", "stack used", "stack"]
+    head = ["image", "middleware", "flash", "RAM", "of RAM", "stack used", "stack"]
     notes = [
-        "Bytes. Executables of EPG's own, which run from RAM: text, data and bss all take it; of RAM: without the two "
-        "banks of 4 KiB for stacks. Float and double arithmetic is the compiler's on Pico. Stack: that of the "
-        "communication side, within bss; used: at most, in two simulated seconds on RP2040, as the console says."
+        "Bytes. Executables of EPG's own, which run from flash; code and constants of the control cycle are in RAM, "
+        "and also in flash, from which the start copies them. RAM includes the reserved stacks and heap. Float and "
+        "double arithmetic is the compiler's on Pico. Stack: that of the communication side, within RAM; used: at "
+        "most, in two simulated seconds on RP2040, as the console says."
     ]
     table = Table("Size of JIWY's images by middleware", head, rows, notes)
     show("pico_communication", [table], options.write, command_line("pico_communication"))
@@ -76,10 +77,10 @@ def firmware(board: str, platform: str, middleware: str) -> Path:
 def row(board: str, platform: str, middleware: str) -> list[str]:
     elf = firmware(board, platform, middleware)
     size = size_of(elf)
-    share = 100 * (size.text + size.data + size.bss) / RAM[board]
+    ram = ram_of(elf)
     used, reserved = stack(platform, middleware) if board == "pico" and "console" in middleware else ("", "")
     name = TARGETS[board, platform]
-    numbers = [str(size.text), str(size.data), str(size.bss), f"{share:.0f} %"]
+    numbers = [str(size.text + size.data), str(ram), f"{100 * ram / RAM[board]:.0f} %"]
     return [name, MIDDLEWARES[middleware], *numbers, used, reserved]
 
 

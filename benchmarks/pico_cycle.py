@@ -257,10 +257,10 @@ def size_table() -> Table:
     rows = []
     for board, title in (("pico", "Pico"), ("pico2", "Pico 2")):
         for platform, name in (("bare_metal", "bare metal"), ("freertos", "FreeRTOS")):
-            rows.append(size_row(f"EPG, {title}, {name}", board, platform, "jiwy_firmware_33"))
+            rows.append(size_row(f"EPG, {title}, {name}", board, platform, "jiwy_in_ram_33"))
         rows.append(size_row(f"by hand, {title}, bare metal", board, "bare_metal", "by_hand_wrap_core1"))
     notes = [
-        "All run from RAM, so text takes RAM too; arithmetic is the SDK's own. By hand: the SDK's stdio over USB, "
+        "All run from RAM here, so text takes RAM too; arithmetic is the SDK's own. By hand: the SDK's stdio over USB, "
         "setpoints, positions and statistics, none of the rest of the console, no capture (16 kB of bss), no store."
     ]
     return Table("Size of JIWY, bytes", ["image", "text", "data", "bss"], rows, notes)

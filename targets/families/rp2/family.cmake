@@ -58,7 +58,7 @@ function(_epg_rp2_target name)
     target_link_libraries(${name}_port INTERFACE epg_pico_usb)
   endif()
   # Deferred to the end of the top directory: the user may set properties of executables after epg_add_target().
-  cmake_language(EVAL CODE "cmake_language(DEFER DIRECTORY [[${CMAKE_SOURCE_DIR}]] CALL _epg_rp2_check_executables [[${name}]] [[${ports}]] [[${CMAKE_SOURCE_DIR}]])")
+  cmake_language(EVAL CODE "cmake_language(DEFER DIRECTORY [[${CMAKE_SOURCE_DIR}]] CALL _epg_rp2_finish_executables [[${name}]] [[${ports}]] [[${CMAKE_SOURCE_DIR}]])")
   foreach(clock IN LISTS EPG_CLOCKS)
     if(clock MATCHES "^sys=([0-9]+)$")
       set_target_properties(${name} PROPERTIES EPG_RP2_CLK_SYS "${CMAKE_MATCH_1}")
@@ -84,13 +84,16 @@ bi_decl(bi_program_feature(\"EPG \" @NAME@_EPG_VERSION \" target @name@ \" @NAME
   set(${result} "${file}" PARENT_SCOPE)
 endfunction()
 
-# Reports an error for each executable in or below <directory> that links target <name> with settings under which the
-# target cannot run.  <usb> is the number of its serial ports on USB; if it is not 0, the target needs the USB device.
-function(_epg_rp2_check_executables name usb directory)
+# Finishes each executable in or below <directory> that links target <name>: puts the SDK's mathematics into RAM, and
+# reports an error for settings under which the target cannot run.  <usb> is the number of the target's serial ports on
+# USB; if it is not 0, the target needs the USB device.
+function(_epg_rp2_finish_executables name usb directory)
   get_property(targets DIRECTORY "${directory}" PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target IN LISTS targets)
     get_target_property(libraries ${target} LINK_LIBRARIES)
     if("${name}" IN_LIST libraries OR "EPG::${name}" IN_LIST libraries)
+      _epg_rp2_math_in_ram("${directory}")
+      _epg_rp2_check_binary_type("${name}" "${target}")
       if(usb)
         _epg_rp2_check_stdio("${name}" "${target}" "${libraries}")
       endif()
@@ -105,8 +108,36 @@ Take PICO_NO_RAM_VECTOR_TABLE out of the compile definitions of ${target}.")
   endforeach()
   get_property(subdirectories DIRECTORY "${directory}" PROPERTY SUBDIRECTORIES)
   foreach(subdirectory IN LISTS subdirectories)
-    _epg_rp2_check_executables("${name}" "${usb}" "${subdirectory}")
+    _epg_rp2_finish_executables("${name}" "${usb}" "${subdirectory}")
   endforeach()
+endfunction()
+
+# Puts the SDK's mathematics that is written in C (pow, floor, fmod, ...) and its tests for NaN into RAM, in all
+# executables of <directory>.  The SDK's option PICO_DOUBLE_IN_RAM does this only for the rest of its arithmetic.
+function(_epg_rp2_math_in_ram directory)
+  get_property(done DIRECTORY "${directory}" PROPERTY EPG_RP2_MATH_IN_RAM)
+  if(done)
+    return()
+  endif()
+  set_property(DIRECTORY "${directory}" PROPERTY EPG_RP2_MATH_IN_RAM TRUE)
+  foreach(library pico_double_pico pico_float_pico)
+    get_target_property(sources ${library} INTERFACE_SOURCES)
+    list(FILTER sources INCLUDE REGEX "_(math\\.c|aeabi_rp2040\\.S)$")
+    set_property(SOURCE ${sources} DIRECTORY "${directory}" APPEND PROPERTY COMPILE_OPTIONS
+      -include "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/math_in_ram.h")
+  endforeach()
+endfunction()
+
+# Reports an error if <target>, an executable that links target <name>, has a type with which the target cannot run.
+function(_epg_rp2_check_binary_type name target)
+  get_target_property(type ${target} PICO_TARGET_BINARY_TYPE)
+  if(NOT type)
+    set(type "${PICO_DEFAULT_BINARY_TYPE}")
+  endif()
+  if(NOT type MATCHES "^(default|copy_to_ram|no_flash|)$")
+    message(SEND_ERROR "EPG: ${target} links EPG::${name}, which cannot run in an executable of the type '${type}'.
+Write pico_set_binary_type(${target} default) to run it from flash, or copy_to_ram to run it from RAM.")
+  endif()
 endfunction()
 
 # Reports an error if the SDK's stdio over USB is enabled for <target>, an executable that links target <name>.
@@ -204,8 +235,8 @@ function(_epg_rp2_small_sources executable)
   set_property(SOURCE ${sources} TARGET_DIRECTORY ${executable} APPEND PROPERTY COMPILE_OPTIONS ${options})
 endfunction()
 
-# Makes an <executable> with EPG's main() run from RAM, and adds its output files for flashing (.uf2, .hex, .bin).  The
-# SDK sets the frequency of clk_sys that the board or the .tcf of target <name> has.
+# Adds the output files for flashing (.uf2, .hex, .bin) to an <executable> with EPG's main().  The SDK sets the frequency
+# of clk_sys that the board or the .tcf of target <name> has.
 function(_epg_rp2_executable executable name)
   _epg_find_picotool()
   get_target_property(clk_sys ${name} EPG_RP2_CLK_SYS)
@@ -215,7 +246,6 @@ function(_epg_rp2_executable executable name)
   # These executables have no stdio, so panic() stops without a text.  Its text would need the C library's streams and
   # heap: 9 kB.
   target_compile_definitions(${executable} PRIVATE PICO_PANIC_FUNCTION=)
-  pico_set_binary_type(${executable} copy_to_ram)
   pico_enable_stdio_uart(${executable} 0)
   pico_enable_stdio_usb(${executable} 0)
   pico_add_extra_outputs(${executable})

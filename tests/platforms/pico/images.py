@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,10 +31,10 @@ def skip_unless_emulated(platform: str) -> None:
     skip_if_missing(node, rp2040js)
 
 
-def images(board: str, platform: str, *names: str, middleware: str = "none") -> Path:
+def images(board: str, platform: str, *names: str, middleware: str = "none", stock_arithmetic: bool = False) -> Path:
     """Builds ``names``.elf and returns their folder; SDK and compiler must be installed."""
     variables = {"PLATFORM": platform, "MIDDLEWARE": middleware}
-    return build(PROJECT, board=board, targets=names, variables=variables)
+    return build(PROJECT, board=board, targets=names, variables=variables, stock_arithmetic=stock_arithmetic)
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,16 @@ class Size:
 def size_of(elf: Path) -> Size:
     output = binutils("size", str(elf)).splitlines()[1].split()
     return Size(*(int(number) for number in output[:3]))
+
+
+def ram_of(elf: Path) -> int:
+    """Bytes of RAM that an image takes: code, constants, variables, and the stacks and the heap that it reserves."""
+    total = 0
+    for line in binutils("readelf", "-SW", str(elf)).splitlines():
+        section = re.match(r" *\[ *\d+\] \S+ +\S+ +([0-9a-f]{8}) [0-9a-f]+ ([0-9a-f]+) [0-9a-f]+ +\w*A", line)
+        if section and 0x20000000 <= int(section[1], 16) < 0x30000000:
+            total += int(section[2], 16)
+    return total
 
 
 def binutils(program: str, *arguments: str) -> str:

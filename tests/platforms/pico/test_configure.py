@@ -243,6 +243,11 @@ USER = "add_executable(user main.c)\ntarget_link_libraries(user EPG::jiwy pico_s
             "",
             "Take PICO_NO_RAM_VECTOR_TABLE out of the compile definitions of user.",
         ),
+        (
+            EXECUTABLE + "pico_set_binary_type(jiwy_firmware copied)\n",
+            "",
+            "which cannot run in an executable of the type 'copied'. Write pico_set_binary_type(jiwy_firmware default)",
+        ),
     ],
 )
 def test_settings_that_a_target_cannot_run_with(project: str, option: str, said: str, tmp_path: Path) -> None:
