@@ -79,6 +79,8 @@ class MiddlewareView:
     ``longest_topic`` is the length in characters of the longest full name of a topic.  ``longest_node`` is the length
     of the node's name with its namespace.  Both count a serial number in the place of ``$serial``.
 
+    ``transport_rate`` is the number of bytes per second that a UART carries; 0 for faster transports.
+
     ``prefix`` is the beginning of the C names in the template's code: "middleware", or "console" for a console that
     runs beside another middleware.
     """
@@ -86,6 +88,7 @@ class MiddlewareView:
     name: str
     symbol: Code
     prefix: Code
+    transport_rate: int
     options: Mapping[str, object]
     monitor_count: int
     publications: int
@@ -134,8 +137,12 @@ def service_of(app: Application, macro: Macro, symbols: Mapping[str, Code]) -> S
     captures = [options.get("capture")] if "capture" in middleware.uses else []
     captures += [communication.console_options.get("capture")] if console and "capture" in console.uses else []
     return Service(
-        middleware=_view(app, middleware, "middleware", options, monitor_count),
-        console=_view(app, console, "console", communication.console_options, monitor_count) if console else None,
+        middleware=_view(app, middleware, "middleware", options, communication.transport, monitor_count),
+        console=_view(
+            app, console, "console", communication.console_options, communication.console_transport, monitor_count
+        )
+        if console
+        else None,
         signals=signals,
         time_index=time_index,
         monitor_count=monitor_count,
@@ -151,7 +158,12 @@ def service_of(app: Application, macro: Macro, symbols: Mapping[str, Code]) -> S
 
 
 def _view(
-    app: Application, middleware: Middleware, prefix: str, options: Mapping[str, object], monitor_count: int
+    app: Application,
+    middleware: Middleware,
+    prefix: str,
+    options: Mapping[str, object],
+    transport: str | None,
+    monitor_count: int,
 ) -> MiddlewareView | None:
     if not middleware.symbol:
         return None
@@ -160,6 +172,7 @@ def _view(
         name=middleware.name,
         symbol=identifier(middleware.symbol),
         prefix=Code(prefix),
+        transport_rate=_transport_rate(app, transport),
         options=options,
         monitor_count=monitor_count,
         publications=len(app.publications),
@@ -167,6 +180,12 @@ def _view(
         longest_topic=max((len(_full(app, topic.name)) for topic in topics), default=0),
         longest_node=len(_full(app, "~/")) - (1 if app.namespace else 2),
     )
+
+
+def _transport_rate(app: Application, transport: str | None) -> int:
+    """Bytes per second of a UART: a byte takes ten bits, with its start and stop bit."""
+    rates = [c.parameters.get("baud_rate") for c in app.components if c.name == transport]
+    return rates[0] // 10 if rates and isinstance(rates[0], int) else 0
 
 
 def _full(app: Application, topic: str) -> str:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The console's protocol: each ``TEST(name)`` of ``c/console_tests.c``, with sanitizers."""
+"""The console's protocol: each ``TEST(name)`` of ``c/console_tests.c`` and ``c/live_tests.c``, with sanitizers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 CONSOLE = ROOT / "targets" / "middlewares" / "console"
 HERE = Path(__file__).resolve().parent / "c"
-TESTS = HERE / "console_tests.c"
+TESTS = {name: HERE / f"{name}.c" for name in ("console_tests", "live_tests")}
 
 
 def _runtime_tests() -> ModuleType:
@@ -33,18 +33,22 @@ program = _runtime_tests()
 
 
 @pytest.fixture(scope="session")
-def console_tests(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def programs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """The test programs, by name."""
+    folder = tmp_path_factory.mktemp("console")
     fakes = [program.SOURCES / "fake_port.c", program.SOURCES / "fake_application.c"]
-    sources = [TESTS, HERE / "console_bench.c", *fakes, *sorted(CONSOLE.glob("*.c")), *program.runtime_sources()]
-    output: Path = program.compile_program(
-        tmp_path_factory.mktemp("console") / "console_tests", sources, includes=[CONSOLE, HERE]
-    )
-    return output
+    sources = [HERE / "console_bench.c", *fakes, *sorted(CONSOLE.glob("*.c")), *program.runtime_sources()]
+    return {
+        name: program.compile_program(folder / name, [tests, *sources], includes=[CONSOLE, HERE])
+        for name, tests in TESTS.items()
+    }
 
 
-@pytest.mark.parametrize("name", program.names_in(TESTS))
-def test_in_c(console_tests: Path, name: str) -> None:
-    done = program.run_program([console_tests, name])
+@pytest.mark.parametrize(
+    ("tests", "name"), [(tests, name) for tests, source in TESTS.items() for name in program.names_in(source)]
+)
+def test_in_c(programs: dict[str, Path], tests: str, name: str) -> None:
+    done = program.run_program([programs[tests], name])
     assert done.returncode == 0, done.stderr
 
 

@@ -42,6 +42,7 @@ static void begin_session(bool connected)
         session.jogging = false;
     }
     session.input = (epg_console_input_t){0};
+    epg_console_end_frames(&session);
     epg_console_output_clear(&session.output);
     session.list = NULL;
     session.wait = EPG_CONSOLE_READY;
@@ -100,6 +101,9 @@ static void poll_wait(void)
     case EPG_CONSOLE_DISABLING:
         over = cycled;
         problem = session.status.enabled ? "was enabled again" : NULL;
+        break;
+    case EPG_CONSOLE_ENDING_STREAM:
+        over = epg_telemetry_idle(session.target->application->telemetry);
         break;
     }
     if (!over && session.now_ns - session.wait_since_ns > (uint64_t)NO_CYCLE_MS * MS) {
@@ -169,6 +173,7 @@ static bool urgent(void)
 static void run_line(void)
 {
     epg_console_command_t command;
+    session.output.tag = session.input.tag;
     if (session.input.too_long) {
         epg_console_error(&session, "line", "is too long", NULL);
     } else if (session.input.no_text) {
@@ -186,6 +191,7 @@ static void run_line(void)
         }
     }
     epg_console_input_clear(&session.input);
+    session.output.tag = 0;
 }
 
 static void poll_input(void)
@@ -234,12 +240,18 @@ static void poll(uint64_t now_ns)
         epg_console_output_clear(&session.output);
         return;
     }
+    session.output.tag = session.live.wait_tag;
     poll_wait();
+    session.output.tag = session.live.jog_tag;
     epg_console_poll_jog(&session);
+    session.output.tag = 0;
     epg_console_poll_capture(&session);
     poll_input();
+    session.output.tag = session.live.list_tag;
     poll_list();
+    session.output.tag = 0;
     epg_console_poll_watch(&session);
+    epg_console_poll_live(&session);
     if (session.output.used == 0 || epg_console_send(&session.output, session.stream)) {
         session.progress_ns = now_ns;
     }

@@ -19,9 +19,10 @@
 typedef struct epg_console_options {
     char *output; /**< `output_size` bytes: room for answers that are not yet sent */
     size_t output_size;
-    double *values;       /**< room for all monitoring values */
-    double jog_duty;      /**< largest magnitude of the duty of `jog` */
-    uint64_t jog_time_ns; /**< longest time of `jog` */
+    uint32_t transport_rate; /**< bytes per second that the transport carries; 0: more than a stream can need */
+    double *values;          /**< room for all monitoring values */
+    double jog_duty;         /**< largest magnitude of the duty of `jog` */
+    uint64_t jog_time_ns;    /**< longest time of `jog` */
 } epg_console_options_t;
 
 extern const epg_middleware_t epg_console;

@@ -15,6 +15,7 @@ void epg_console_input_clear(epg_console_input_t *input)
     input->length = 0;
     input->too_long = false;
     input->no_text = false;
+    input->tag = 0;
     input->complete = false;
 }
 
@@ -29,7 +30,9 @@ static void take(epg_console_session_t *session, char byte)
 {
     epg_console_input_t *input = &session->input;
     const unsigned char code = (unsigned char)byte;
-    if (byte == '\r' || byte == '\n') {
+    if (code == 0 || session->live.frame.open) {
+        epg_console_take_framed(session, code);
+    } else if (byte == '\r' || byte == '\n') {
         input->complete = input->length > 0 || input->too_long || input->no_text;
         echo(session, "\r\n", byte == '\r' || input->complete ? 2 : 0);
     } else if (code == END_OF_TEXT) {

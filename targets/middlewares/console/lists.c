@@ -116,6 +116,9 @@ static bool stats_line(epg_console_session_t *session, size_t index)
     epg_console_begin(output, "stat");
     if (index == 0) {
         epg_console_count(output, "enabled", status->enabled ? 1U : 0U);
+        if (status->enabled && status->leased) {
+            epg_console_count(output, "leased", 1U);
+        }
         epg_console_fault(session, status);
         epg_console_key(output, "time");
         epg_console_seconds(output, epg_console_since_start(session, status->time_ns));

@@ -8,6 +8,8 @@
 #include <string.h>
 
 #include "epg/decimal.h"
+#include "frame.h"
+#include "live.h"
 
 void epg_console_output_clear(epg_console_output_t *output)
 {
@@ -15,6 +17,7 @@ void epg_console_output_clear(epg_console_output_t *output)
     output->used = 0;
     output->writing = 0;
     output->full = false;
+    output->in_frame = false;
 }
 
 size_t epg_console_output_room(const epg_console_output_t *output)
@@ -22,23 +25,95 @@ size_t epg_console_output_room(const epg_console_output_t *output)
     return output->size - output->used;
 }
 
+/** Writes a byte of the unfinished line or frame at `place`, in bytes after the complete lines. */
+static void set(epg_console_output_t *output, size_t place, char byte)
+{
+    const size_t index = output->begin + output->used + place;
+    output->bytes[index < output->size ? index : index - output->size] = byte;
+}
+
+static void put(epg_console_output_t *output, char byte)
+{
+    if (output->writing == epg_console_output_room(output)) {
+        output->full = true;
+    } else {
+        set(output, output->writing++, byte);
+    }
+}
+
+/** Ends a run of COBS with its code, and begins the next one. */
+static void next_run(epg_console_output_t *output)
+{
+    if (!output->full) {
+        set(output, output->code_at, (char)output->run);
+    }
+    output->code_at = output->writing;
+    output->run = 1;
+    put(output, 0);
+}
+
+static void encode(epg_console_output_t *output, uint8_t byte)
+{
+    output->crc = epg_console_crc(output->crc, byte);
+    if (byte != 0) {
+        put(output, (char)byte);
+        output->run++;
+    }
+    if (byte == 0 || output->run == EPG_CONSOLE_FRAME_RUN) {
+        next_run(output);
+    }
+}
+
+void epg_console_begin_frame(epg_console_output_t *output, char type)
+{
+    output->writing = 0;
+    output->full = false;
+    output->in_frame = true;
+    output->crc = EPG_CONSOLE_CRC_START;
+    put(output, 0);
+    output->code_at = output->writing;
+    output->run = 1;
+    put(output, 0);
+    encode(output, (uint8_t)type);
+}
+
+void epg_console_whole_number(epg_console_output_t *output, uint64_t value, size_t bytes)
+{
+    for (size_t i = 0; i < bytes; i++) {
+        encode(output, (uint8_t)(value >> 8U * i));
+    }
+}
+
+static void end_frame(epg_console_output_t *output)
+{
+    epg_console_whole_number(output, output->crc ^ EPG_CONSOLE_CRC_START, EPG_CONSOLE_FRAME_CRC);
+    if (!output->full) {
+        set(output, output->code_at, (char)output->run);
+    }
+    put(output, 0);
+    output->in_frame = false;
+}
+
 void epg_console_begin(epg_console_output_t *output, const char *first)
 {
     output->writing = 0;
     output->full = false;
+    output->in_frame = false;
+    if (output->framed) {
+        epg_console_begin_frame(output, EPG_CONSOLE_ANSWER);
+        epg_console_whole_number(output, output->tag, 1);
+    }
     epg_console_text(output, first);
 }
 
 void epg_console_bytes(epg_console_output_t *output, const char *text, size_t length)
 {
-    if (length > output->size - output->used - output->writing) {
-        output->full = true;
-        return;
-    }
-    for (size_t i = 0; i < length; i++) {
-        const size_t place = output->begin + output->used + output->writing;
-        output->bytes[place < output->size ? place : place - output->size] = text[i];
-        output->writing++;
+    for (size_t i = 0; i < length && !output->full; i++) {
+        if (output->in_frame) {
+            encode(output, (uint8_t)text[i]);
+        } else {
+            put(output, text[i]);
+        }
     }
 }
 
@@ -99,7 +174,11 @@ void epg_console_count(epg_console_output_t *output, const char *name, uint32_t 
 
 bool epg_console_end(epg_console_output_t *output)
 {
-    epg_console_text(output, "\r\n"); /* a plain serial terminal needs both characters */
+    if (output->in_frame) {
+        end_frame(output);
+    } else {
+        epg_console_text(output, "\r\n"); /* a plain serial terminal needs both characters */
+    }
     const bool whole = !output->full;
     output->used += whole ? output->writing : 0U;
     output->writing = 0;
@@ -116,6 +195,9 @@ void epg_console_end_or_drop(epg_console_output_t *output)
 
 void epg_console_raw(epg_console_output_t *output, const char *bytes, size_t length)
 {
+    if (output->framed) {
+        return;
+    }
     epg_console_begin(output, "");
     epg_console_bytes(output, bytes, length);
     output->used += output->full ? 0U : output->writing;

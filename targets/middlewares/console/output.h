@@ -3,7 +3,8 @@
  * @file
  * The output of the console: a ring of bytes for lines that are not yet sent.
  *
- * A line is built piece by piece, after the complete lines.  It is kept completely or not at all.
+ * A line is built piece by piece, after the complete lines.  It is kept completely or not at all.  While the other end
+ * uses frames (frame.h), each line is sent as the text of a frame, and frames with other messages are built like lines.
  */
 #ifndef EPG_CONSOLE_OUTPUT_H
 #define EPG_CONSOLE_OUTPUT_H
@@ -19,8 +20,14 @@ typedef struct epg_console_output {
     size_t size;
     size_t begin;     /**< index of the first byte to send */
     size_t used;      /**< bytes of complete lines */
-    size_t writing;   /**< bytes of the unfinished line after them */
-    bool full;        /**< the unfinished line does not fit */
+    size_t writing;   /**< bytes of the unfinished line or frame after them */
+    bool full;        /**< the unfinished line or frame does not fit */
+    bool framed;      /**< lines are sent in frames */
+    uint8_t tag;      /**< of the frames of lines: number of the command that the line answers; 0: none */
+    bool in_frame;    /**< a frame is unfinished */
+    size_t code_at;   /**< place of the unfinished frame's last code, in bytes after `used` */
+    uint8_t run;      /**< that code so far */
+    uint32_t crc;     /**< CRC of the unfinished frame's message so far */
     uint32_t dropped; /**< number of lines for which there was no room */
 } epg_console_output_t;
 
@@ -29,6 +36,12 @@ void epg_console_output_clear(epg_console_output_t *output);
 
 /** Returns the number of free bytes. */
 size_t epg_console_output_room(const epg_console_output_t *output);
+
+/** Begins a frame with the message type `type`. */
+void epg_console_begin_frame(epg_console_output_t *output, char type);
+
+/** Appends the lowest `bytes` bytes of a whole number to the unfinished frame, least significant byte first. */
+void epg_console_whole_number(epg_console_output_t *output, uint64_t value, size_t bytes);
 
 /** Begins a line with the word `first`.  Drops an unfinished line. */
 void epg_console_begin(epg_console_output_t *output, const char *first);
@@ -55,13 +68,13 @@ void epg_console_value(epg_console_output_t *output, const char *name, double va
 /** Appends " name=value" for a whole number. */
 void epg_console_count(epg_console_output_t *output, const char *name, uint32_t value);
 
-/** Ends the line.  Returns false if it did not fit; it is removed then. */
+/** Ends the line or frame.  Returns false if it did not fit; it is removed then. */
 bool epg_console_end(epg_console_output_t *output);
 
 /** As epg_console_end(), but counts a line that does not fit as dropped, because it is not written again. */
 void epg_console_end_or_drop(epg_console_output_t *output);
 
-/** Appends bytes that are not a line, if there is room. */
+/** Appends bytes that are not a line, if there is room, and if lines are not sent in frames. */
 void epg_console_raw(epg_console_output_t *output, const char *bytes, size_t length);
 
 /** Passes bytes to the stream, as many as it accepts.  Returns true if it accepted at least one. */

@@ -37,6 +37,7 @@ void epg_console_error(epg_console_session_t *self, const char *command, const c
 void epg_console_answer(epg_console_session_t *self, const char *command, epg_console_list_t *list)
 {
     self->list = list;
+    self->live.list_tag = self->output.tag;
     self->list_command = command;
     self->list_index = 0;
 }
@@ -44,6 +45,7 @@ void epg_console_answer(epg_console_session_t *self, const char *command, epg_co
 void epg_console_wait_for(epg_console_session_t *self, const char *command, epg_console_wait_t wait)
 {
     self->wait = wait;
+    self->live.wait_tag = self->output.tag;
     self->wait_command = command;
     self->wait_since_ns = self->now_ns;
     self->wait_cycles = self->has_status ? self->status.statistics.cycles : 0U;

@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "console.h"
+#include "live.h"
 #include "output.h"
 
 enum {
@@ -36,10 +37,11 @@ typedef bool epg_console_list_t(epg_console_session_t *session, size_t index);
 
 /** The event that the next command waits for. */
 typedef enum epg_console_wait {
-    EPG_CONSOLE_READY,    /**< none */
-    EPG_CONSOLE_APPLYING, /**< the control side makes changes of parameters */
-    EPG_CONSOLE_ENABLING, /**< a cycle acts on a request to enable */
-    EPG_CONSOLE_DISABLING /**< a cycle acts on a request to disable */
+    EPG_CONSOLE_READY,        /**< none */
+    EPG_CONSOLE_APPLYING,     /**< the control side makes changes of parameters */
+    EPG_CONSOLE_ENABLING,     /**< a cycle acts on a request to enable */
+    EPG_CONSOLE_DISABLING,    /**< a cycle acts on a request to disable */
+    EPG_CONSOLE_ENDING_STREAM /**< a cycle ends the stream */
 } epg_console_wait_t;
 
 enum { EPG_CONSOLE_CHUNK = 64 };
@@ -49,8 +51,9 @@ typedef struct epg_console_input {
     char chunk[EPG_CONSOLE_CHUNK]; /**< bytes that were read from the stream at once */
     size_t chunk_length;
     size_t chunk_position; /**< the next byte of the chunk; the bytes after the end of a line wait here */
-    char line[EPG_CONSOLE_LINE + 1];
+    char line[2 + EPG_CONSOLE_LINE + EPG_CONSOLE_FRAME_CRC + 1]; /**< also holds a frame with a type and a tag */
     size_t length;
+    uint8_t tag; /**< of the frame with the line; 0: the line was not in a frame */
     bool too_long;
     bool no_text;  /**< the line contains bytes that are not ASCII text */
     bool complete; /**< the line has ended and must be carried out */
@@ -92,6 +95,8 @@ struct epg_console_session {
 
     bool jogging;
     bool recording;
+
+    epg_console_live_t live;
 };
 
 /* console.c ---------------------------------------------------------------------------------------------------- */
@@ -124,6 +129,9 @@ uint64_t epg_console_since_start(const epg_console_session_t *session, uint64_t 
 
 /** Takes the bytes that have arrived, up to the end of a line. */
 void epg_console_read(epg_console_session_t *session);
+
+/** Takes a byte of a frame, or the zero byte that begins it. */
+void epg_console_take_framed(epg_console_session_t *session, uint8_t byte);
 
 /** Drops the line. */
 void epg_console_input_clear(epg_console_input_t *input);
@@ -162,6 +170,15 @@ void epg_console_poll_jog(epg_console_session_t *session);
 
 /** Reports a recording that has ended. */
 void epg_console_poll_capture(epg_console_session_t *session);
+
+/** Enables the target on a lease (epg_control_request_leased()), and begins to send numbers. */
+void epg_console_enable_leased(epg_console_session_t *session);
+
+/** Sends rows of the stream, and the number that is due. */
+void epg_console_poll_live(epg_console_session_t *session);
+
+/** Ends the connection to a program: no stream, no frames. */
+void epg_console_end_frames(epg_console_session_t *session);
 
 /** Writes a watch line if one is due. */
 void epg_console_poll_watch(epg_console_session_t *session);

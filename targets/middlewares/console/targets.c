@@ -19,8 +19,17 @@ static bool has_words(epg_console_session_t *session, const epg_console_command_
 
 void epg_console_enable(epg_console_session_t *session, const epg_console_command_t *command)
 {
-    if (has_words(session, command, 1, "must be the only word")) {
-        epg_control_request(session->target->control, true);
+    const bool leased = command->count == 2 && strcmp(command->words[1], "leased") == 0;
+    if (leased && !session->output.framed) {
+        epg_console_error(session, "enable", "a lease is for programs that use frames", NULL);
+    } else if (leased && session->has_status && session->status.enabled && !session->status.leased) {
+        epg_console_error(session, "enable", "the target is enabled already, without a lease", NULL);
+    } else if (leased || has_words(session, command, 1, "must be the only word")) {
+        if (leased) {
+            epg_console_enable_leased(session);
+        } else {
+            epg_control_request(session->target->control, true);
+        }
         epg_console_wait_for(session, "enable", EPG_CONSOLE_ENABLING);
     }
 }
@@ -129,6 +138,7 @@ void epg_console_jog(epg_console_session_t *session, const epg_console_command_t
     } else {
         const uint64_t period_ns = session->target->application->period_ns;
         const uint64_t cycles = ((uint64_t)time_ms * 1000000U + period_ns / 2U) / period_ns;
+        session->live.jog_tag = session->output.tag;
         session->jogging = epg_jog_start(jog, index, duty, cycles == 0 ? 1U : (uint32_t)cycles);
         if (!session->jogging) {
             epg_console_error(session, "jog", "an actuator is moving", NULL);

@@ -49,6 +49,7 @@ typedef struct epg_capture_request {
 typedef struct epg_capture {
     double *memory;
     size_t capacity; /**< size of `memory`, in doubles */
+    size_t lent; /**< doubles at the end of `memory` that recordings must not use; belongs to the communication side */
 
     epg_handover_t handover; /**< of `memory` and of all members below, except `stop` and `recorded` */
     atomic_bool stop;        /**< request of the communication side to end at once */
@@ -83,6 +84,16 @@ size_t epg_capture_rows(const epg_capture_t *capture, size_t columns);
 
 /** Returns true while the memory does not belong to the control side: before, between and after recordings. */
 bool epg_capture_idle(epg_capture_t *capture);
+
+/**
+ * Lends the second half of the memory to another use, until epg_capture_take_back().  Returns it and sets `*room` to
+ * its size in doubles.  A finished recording that reaches into it is lost.  Returns NULL while a recording that reaches
+ * into it is in progress.
+ */
+double *epg_capture_lend(epg_capture_t *capture, size_t *room);
+
+/** Ends the loan. */
+void epg_capture_take_back(epg_capture_t *capture);
 
 /** Starts a recording.  `*request` must be within its ranges.  Returns false while another one is in progress. */
 bool epg_capture_start(epg_capture_t *capture, const epg_capture_request_t *request);

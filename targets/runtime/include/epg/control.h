@@ -59,6 +59,7 @@
 #include "epg/jog.h"
 #include "epg/parameters.h"
 #include "epg/status.h"
+#include "epg/telemetry.h"
 
 /** The reaction to a setpoint that is older than its timeout: keep the value, use 0, or disable the target. */
 typedef enum epg_timeout_action { EPG_TIMEOUT_HOLD, EPG_TIMEOUT_ZERO, EPG_TIMEOUT_DISABLE } epg_timeout_action_t;
@@ -131,6 +132,7 @@ typedef struct epg_application {
 
     epg_parameters_t *parameters; /**< parameters that can be changed while the model runs; NULL: none */
     epg_capture_t *capture;       /**< recording of signals; NULL: none */
+    epg_telemetry_t *telemetry;   /**< stream of signals; NULL: none */
     epg_jog_t *jog;               /**< actuators that can be moved by hand; NULL: none */
 } epg_application_t;
 
@@ -165,6 +167,7 @@ struct epg_control {
         epg_status_t status;
         struct {
             bool enabled;
+            bool leased; /**< an enabled target stays enabled only until `lease` */
             uint16_t fault_component;
             epg_fault_t fault;
             uint64_t time_ns; /**< tick of the newest cycle */
@@ -178,8 +181,9 @@ struct epg_control {
     uint32_t until_step; /**< cycles until the model's next step */
     uint32_t consecutive_overruns;
     uint32_t request_seen;
-    atomic_uint request;    /**< written by the communication side: (sequence << 1) | enable */
-    atomic_uint dropped;    /**< written by the communication side: number of refused setpoints */
+    atomic_uint request; /**< written by the communication side: (sequence << 2) | (leased << 1) | enable */
+    atomic_uint lease;   /**< written by the communication side: end of the lease, in units of 2^20 ns, modulo 2^32 */
+    atomic_uint dropped; /**< written by the communication side: number of refused setpoints */
     atomic_uint reconnects; /**< written by the communication side */
     atomic_uint alive;      /**< written by the communication side; 0 before the first epg_control_alive() */
     unsigned int alive_seen;
@@ -201,6 +205,7 @@ struct epg_control {
     static_assert(offsetof(epg_control_t, member) - offsetof(epg_control_t, status) == offsetof(epg_status_t, member), \
                   "a control object begins with the members of epg_status_t")
 EPG_STATUS_MEMBER(enabled);
+EPG_STATUS_MEMBER(leased);
 EPG_STATUS_MEMBER(fault_component);
 EPG_STATUS_MEMBER(fault);
 EPG_STATUS_MEMBER(time_ns);
@@ -295,6 +300,16 @@ bool epg_control_observe(epg_control_t *control, epg_status_t *status);
  * clears a latched fault.  May be called from every context.
  */
 void epg_control_request(epg_control_t *control, bool enable);
+
+/**
+ * Requests to enable the target on a lease: it stays enabled only until `until_ns` (board time, at most 2^51 ns ahead),
+ * which epg_control_extend() moves.  When that time has passed, the next cycle latches EPG_FAULT_OPERATOR.  A target
+ * that is enabled already keeps its way of being enabled.  Only one context may call this function and the next one.
+ */
+void epg_control_request_leased(epg_control_t *control, uint64_t until_ns);
+
+/** Moves the end of the lease to `until_ns`, rounded down to a multiple of 2^20 ns (1.05 ms). */
+void epg_control_extend(epg_control_t *control, uint64_t until_ns);
 
 /**
  * Requests to clear a latched fault; takes effect in the next cycle.  The target stays disabled.  May be called from

@@ -36,6 +36,7 @@ typedef enum epg_fault {
     EPG_FAULT_OUTPUT,           /**< the driver of an output refused a write */
     EPG_FAULT_TICK,             /**< the timer of the control cycle has a period that is not the control period */
     EPG_FAULT_PRIORITY,         /**< another interrupt has the control cycle's priority, and could delay it */
+    EPG_FAULT_OPERATOR,         /**< the program that had enabled the target on a lease does not answer any more */
     EPG_FAULT_LARGEST = 0xFFFF  /**< the largest possible number, so that the type has room for it */
 } epg_fault_t;
 

@@ -19,6 +19,7 @@ extern "C" {
 /** The status of a target at the end of one control cycle. */
 typedef struct epg_status {
     bool enabled;
+    bool leased;              /**< while enabled: the target stays enabled only while a program answers */
     uint16_t fault_component; /**< index of the component with the fault; EPG_NO_COMPONENT: the whole target */
     epg_fault_t fault;        /**< the latched fault; EPG_FAULT_NONE: a disabled target was disabled by request */
     uint64_t time_ns;         /**< tick of the cycle that wrote this status, in board time */

@@ -21,6 +21,7 @@ const char *epg_target_fault(const epg_target_t *target, epg_fault_t fault)
         [EPG_FAULT_OUTPUT] = "output",
         [EPG_FAULT_TICK] = "tick",
         [EPG_FAULT_PRIORITY] = "priority",
+        [EPG_FAULT_OPERATOR] = "operator",
     };
     if ((size_t)fault < sizeof names / sizeof names[0] && names[fault] != NULL) {
         return names[fault];

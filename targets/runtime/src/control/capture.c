@@ -92,7 +92,28 @@ void epg_capture_cycle(epg_capture_t *capture, uint64_t tick_ns, bool fault)
 
 size_t epg_capture_rows(const epg_capture_t *capture, size_t columns)
 {
-    return capture->capacity / (columns + 1U);
+    return (capture->capacity - capture->lent) / (columns + 1U);
+}
+
+double *epg_capture_lend(epg_capture_t *capture, size_t *room)
+{
+    const size_t kept = capture->capacity / 2U;
+    const bool reaches = capture->request.rows * (capture->request.columns + 1U) > kept;
+    if (reaches && !epg_capture_idle(capture)) {
+        return NULL;
+    }
+    if (reaches) {
+        capture->filled = 0;
+        atomic_store(&capture->recorded, 0U);
+    }
+    capture->lent = capture->capacity - kept;
+    *room = capture->lent;
+    return &capture->memory[kept];
+}
+
+void epg_capture_take_back(epg_capture_t *capture)
+{
+    capture->lent = 0;
 }
 
 bool epg_capture_idle(epg_capture_t *capture)

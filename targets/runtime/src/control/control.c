@@ -8,6 +8,9 @@
 #include "epg/port.h"
 #include "setpoint.h"
 
+enum { ENABLE = 1, LEASED = 2, REQUEST_BITS = 3 }; /* of a request */
+enum { LEASE_SHIFT = 20 };                         /* the end of a lease has the unit 2^20 ns */
+
 void epg_control_start(epg_control_t *control, const epg_application_t *application)
 {
     *control = (epg_control_t){
@@ -31,6 +34,9 @@ void epg_control_start(epg_control_t *control, const epg_application_t *applicat
     }
     if (application->capture != NULL) {
         epg_capture_clear(application->capture);
+    }
+    if (application->telemetry != NULL) {
+        epg_telemetry_clear(application->telemetry);
     }
     if (application->jog != NULL) {
         epg_jog_clear(application->jog);
@@ -91,7 +97,7 @@ static void handle_request(epg_control_t *control, bool permitted, uint64_t now_
     }
     control->request_seen = request;
     stop_jog(control);
-    if ((request & 1U) == 0U) {
+    if ((request & ENABLE) == 0U) {
         control->enabled = false;
         return;
     }
@@ -101,10 +107,17 @@ static void handle_request(epg_control_t *control, bool permitted, uint64_t now_
     clear_fault(control);
     if (permitted) {
         control->enabled = true;
+        control->leased = (request & LEASED) != 0U;
         control->initialise = true;
         control->consecutive_overruns = 0;
         epg_setpoints_enable(control->application, now_ns);
     }
+}
+
+/** Returns true if the lease has ended.  The difference modulo 2^32 has the right sign for 26 days. */
+static bool is_over(epg_control_t *control, uint64_t now_ns)
+{
+    return (int32_t)((uint32_t)(now_ns >> LEASE_SHIFT) - atomic_load(&control->lease)) >= 0;
 }
 
 /** Takes new setpoints and requests, and does all checks that can disable the target before a sensor is read. */
@@ -124,6 +137,9 @@ static void command(epg_control_t *control, const epg_application_t *application
     handle_request(control, !refused, now_ns);
     if (refused) {
         epg_control_fault(control, EPG_FAULT_FAIL_SAFE, application->fail_safe_component);
+    }
+    if (control->leased && control->enabled && is_over(control, now_ns)) {
+        latch(control, EPG_FAULT_OPERATOR);
     }
     if (taken || control->setpoints_move) {
         const epg_setpoint_t *late = epg_setpoints_update(application, now_ns, &control->statistics);
@@ -315,6 +331,9 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
     if (application->capture != NULL && epg_handover_there(&application->capture->handover)) {
         epg_capture_cycle(application->capture, tick_ns, control->fault != EPG_FAULT_NONE);
     }
+    if (application->telemetry != NULL) {
+        epg_telemetry_cycle(application->telemetry, tick_ns);
+    }
 
     const uint64_t next_ns = tick_ns + application->period_ns;
     const bool overrun = count_cycle(control, next_ns, begin_ns, epg_port_time_ns(), missed);
@@ -353,10 +372,26 @@ bool epg_control_observe(epg_control_t *control, epg_status_t *status)
     return epg_exchange_read(&control->observer_exchange, status);
 }
 
+static void request(epg_control_t *control, unsigned int bits)
+{
+    const unsigned int sequence = (atomic_load(&control->request) | REQUEST_BITS) + 1U;
+    atomic_store(&control->request, sequence | bits);
+}
+
 void epg_control_request(epg_control_t *control, bool enable)
 {
-    const unsigned int sequence = (atomic_load(&control->request) | 1U) + 1U;
-    atomic_store(&control->request, sequence | (enable ? 1U : 0U));
+    request(control, enable ? ENABLE : 0U);
+}
+
+void epg_control_request_leased(epg_control_t *control, uint64_t until_ns)
+{
+    epg_control_extend(control, until_ns);
+    request(control, ENABLE | LEASED);
+}
+
+void epg_control_extend(epg_control_t *control, uint64_t until_ns)
+{
+    atomic_store(&control->lease, (unsigned int)(until_ns >> LEASE_SHIFT));
 }
 
 void epg_control_reset(epg_control_t *control)

@@ -1,0 +1,305 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A connection to a running target: its description, commands, streams, and enabling on a lease.
+
+>>> # client = Client(Port(Path("/dev/ttyACM0"))); client.command("get")
+"""
+
+from __future__ import annotations
+
+import contextlib
+import struct
+import threading
+import time
+from array import array
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from epg.live.frames import Decoder, encode
+from epg.live.port import PortError
+
+PATIENCE = 1.0
+"""Seconds to wait for an answer before a command is sent again or has failed."""
+KEEP = 0.5
+"""Seconds between two signs of life to the target.  It ends streams after 2 s without one."""
+AGAIN = ("get", "set", "ports", "version", "stats", "disable")
+"""Commands that have the same effect if they are carried out twice."""
+
+
+class Carrier(Protocol):
+    """An open port."""
+
+    def read(self, seconds: float) -> bytes: ...
+    def write(self, data: bytes) -> None: ...
+    def close(self) -> None: ...
+
+
+class Refused(Exception):
+    """The target refused a command, for the reason in its text."""
+
+
+class Lost(Exception):
+    """The target does not answer, or its port is gone."""
+
+
+@dataclass(frozen=True)
+class Signal:
+    """A signal that can be streamed."""
+
+    name: str
+    unit: str
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of the model.  ``generated`` is the value that the firmware was built with."""
+
+    name: str
+    value: float
+    generated: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Description:
+    """The description that a target gives of itself."""
+
+    name: str
+    node: str
+    version: str
+    hash: str
+    setpoints: tuple[str, ...]
+    publications: tuple[str, ...]
+    signals: tuple[Signal, ...]
+    actuators: tuple[str, ...]
+    encoders: tuple[str, ...]
+    parameters: tuple[Parameter, ...]
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Rows of a stream.  ``number`` and ``tick`` (s) are those of the first row; ``values`` has the rows in their order."""
+
+    number: int
+    tick: float
+    values: array[float]
+
+
+class _Answer:
+    """The answer to one command, while it arrives."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+        self.over = threading.Event()
+
+
+class Client:
+    """A connection to a target.  Its methods may be called from every thread.
+
+    ``told`` gets lines that answer no command ("state enabled=0 ..."), and a reason after "lost " when the connection
+    ends.  ``numbered`` gets each number that a target on a lease sends; :meth:`respond` sends it back.  Both are called
+    from the thread that reads, and must return at once.
+
+    :raises Lost: the target does not answer
+    """
+
+    def __init__(
+        self, port: Carrier, told: Callable[[str], None] | None = None, numbered: Callable[[int], None] | None = None
+    ) -> None:
+        self._port = port
+        self._told = told or (lambda line: None)
+        self._numbered = numbered or self.respond
+        self._rows: Callable[[Rows], None] | None = None
+        self._writing = threading.Lock()
+        self._commanding = threading.Lock()
+        self._tag = 0
+        self._answers: dict[int, _Answer] = {}
+        self._over = threading.Event()
+        self._lost = ""
+        self.damaged = 0
+        self._thread = threading.Thread(target=self._read, name="epg live", daemon=True)
+        self._thread.start()
+        try:
+            self.description = self._describe()
+        except BaseException:
+            self.close()
+            raise
+
+    # Commands
+
+    def command(self, line: str) -> list[str]:
+        """Sends a line of the console and returns the lines of its answer, the last of which begins with "ok".
+
+        :raises Refused: the target refused it
+        :raises Lost: there is no answer
+        """
+        with self._commanding:
+            return self._ask(b"C", line.encode("ascii"), line.split(" ")[0])
+
+    def disable(self) -> None:
+        """Disables the target.  It does not wait for other commands.
+
+        :raises Lost: there is no answer
+        """
+        self._ask(b"C", b"disable", "disable")
+
+    def enable_leased(self) -> None:
+        """Enables the target as long as the numbers that it sends come back.
+
+        :raises Refused: the target refused it
+        :raises Lost: there is no answer
+        """
+        self.command("enable leased")
+
+    def respond(self, number: int) -> None:
+        """Sends a number back."""
+        with contextlib.suppress(PortError):
+            self._send(b"R" + number.to_bytes(4, "little"))
+
+    def start_stream(self, signals: Sequence[int], every: int, rows: Callable[[Rows], None]) -> None:
+        """Starts to stream the signals with these indices, a row in every ``every``-th control cycle.
+
+        ``rows`` is called from the thread that reads.
+
+        :raises Refused: the target refused it
+        :raises Lost: there is no answer
+        """
+        data = struct.pack(f"<I{len(signals)}H", every, *signals)
+        with self._commanding:
+            self._rows = rows
+            self._ask(b"S", data, "stream")
+
+    def stop_stream(self) -> None:
+        """Ends the stream.
+
+        :raises Lost: there is no answer
+        """
+        with self._commanding:
+            self._ask(b"S", b"", "stream")
+            self._rows = None
+
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The model's parameters with their present values.
+
+        :raises Lost: there is no answer
+        """
+        return tuple(_parameter(line) for line in self.command("get") if line.startswith("parameter "))
+
+    def close(self) -> None:
+        """Ends the connection.  A target that was enabled on a lease becomes disabled."""
+        if self._over.is_set() and not self._thread.is_alive():
+            return
+        self._over.set()
+        if threading.current_thread() is not self._thread:
+            self._thread.join()
+        self._port.close()
+
+    def _describe(self) -> Description:
+        words = dict(_words(self.command("version")[-1]))
+        ports = [line.split(" ", 3) for line in self.command("ports") if line.startswith("port ")]
+
+        def names(category: str) -> tuple[str, ...]:
+            return tuple(port[2] for port in ports if port[1] == category)
+
+        signals = tuple(
+            Signal(p[2], p[3].removeprefix("unit=") if len(p) > 3 else "") for p in ports if p[1] == "signal"
+        )
+        try:
+            parameters = self.parameters()
+        except Refused:
+            parameters = ()
+        return Description(
+            name=words.get("name", ""),
+            node=words.get("node", ""),
+            version=words.get("epg", ""),
+            hash=words.get("hash", ""),
+            setpoints=names("setpoint"),
+            publications=names("publication"),
+            signals=signals,
+            actuators=names("actuator"),
+            encoders=names("encoder"),
+            parameters=parameters,
+        )
+
+    # Messages
+
+    def _send(self, message: bytes) -> None:
+        with self._writing:
+            self._port.write(encode(message))
+
+    def _ask(self, kind: bytes, data: bytes, command: str) -> list[str]:
+        for _ in range(3 if command in AGAIN else 1):
+            answer = _Answer()
+            with self._writing:
+                self._tag = self._tag % 255 + 1
+                tag = self._tag
+                self._answers[tag] = answer
+            try:
+                self._send(kind + bytes([tag]) + data)
+                heard = -1
+                while not answer.over.wait(PATIENCE) and len(answer.lines) > heard and not self._lost:
+                    heard = len(answer.lines)  # a long answer takes its time
+            except PortError as error:
+                raise Lost(str(error)) from error
+            finally:
+                self._answers.pop(tag, None)
+            if self._lost:
+                raise Lost(self._lost)
+            if answer.over.is_set():
+                if answer.lines[-1].startswith("error "):
+                    raise Refused(answer.lines[-1].split(" ", 2)[-1])
+                return answer.lines
+        raise Lost(f"the target does not answer '{command}'")
+
+    def _read(self) -> None:
+        decoder = Decoder()
+        keep = time.monotonic()
+        try:
+            while not self._over.is_set():
+                if time.monotonic() >= keep:
+                    self._send(b"K")
+                    keep = time.monotonic() + KEEP
+                for part in decoder.feed(self._port.read(0.1)):
+                    self._take(part)
+                self.damaged = decoder.damaged
+        except PortError as error:
+            self._lost = str(error)
+            self._told(f"lost {error}")
+        finally:
+            self._over.set()
+            for answer in list(self._answers.values()):
+                answer.over.set()
+
+    def _take(self, part: bytes | str) -> None:
+        if isinstance(part, str):
+            return  # lines from the time before the first frame
+        kind, data = part[:1], part[1:]
+        if kind == b"A" and data:
+            answer = self._answers.get(data[0])
+            line = data[1:].decode("ascii", "replace")
+            if answer is None:
+                if data[0] == 0:
+                    self._told(line)
+                return
+            answer.lines.append(line)
+            if line.startswith(("ok ", "error ")):
+                answer.over.set()
+        elif kind == b"N" and len(data) == 4:
+            self._numbered(int.from_bytes(data, "little"))
+        elif kind == b"D" and len(data) >= 12 and self._rows is not None:
+            number, tick_ns = struct.unpack_from("<IQ", data)
+            values = array("f")
+            values.frombytes(data[12 : len(data) - (len(data) - 12) % 4])
+            self._rows(Rows(number, tick_ns / 1e9, values))
+
+
+def _words(line: str) -> list[tuple[str, str]]:
+    """The words "name=value" of a line."""
+    return [(name, value) for name, sign, value in (word.partition("=") for word in line.split(" ")) if sign]
+
+
+def _parameter(line: str) -> Parameter:
+    """The parameter of a line "parameter Pan\\\\PID\\\\kp=2.2 generated=2.6 unit=s"."""
+    (name, value), *others = _words(line)
+    known = dict(others)
+    return Parameter(name, float(value), float(known.get("generated", value)), known.get("unit", ""))

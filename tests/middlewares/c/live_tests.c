@@ -1,0 +1,493 @@
+/**
+ * @file
+ * The console for programs, message by message.  The test encodes and decodes frames by itself.
+ */
+#include <stdlib.h>
+
+#include "check.h"
+#include "console_bench.h"
+#include "fake_application.h"
+#include "fake_port.h"
+
+enum { LONGEST = 512 };
+
+typedef struct message {
+    unsigned char bytes[LONGEST];
+    size_t length; /* 0: there was none */
+} message_t;
+
+static epg_telemetry_t telemetry;
+static size_t seen; /* output bytes that the test has decoded */
+
+/* CRC-32 of IEEE 802.3, bit by bit. */
+static uint32_t crc_of(const unsigned char *bytes, size_t length)
+{
+    uint32_t crc = 0xFFFFFFFFU;
+    for (size_t i = 0; i < length; i++) {
+        crc ^= bytes[i];
+        for (int bit = 0; bit < 8; bit++) {
+            crc = (crc & 1U) != 0 ? crc >> 1 ^ 0xEDB88320U : crc >> 1;
+        }
+    }
+    return ~crc;
+}
+
+/* Writes the frame of a message to `frame`; returns its length. */
+static size_t encode(const void *message, size_t length, unsigned char *frame)
+{
+    unsigned char data[LONGEST];
+    memcpy(data, message, length);
+    const uint32_t crc = crc_of(data, length);
+    for (unsigned int i = 0; i < 4; i++) {
+        data[length++] = (unsigned char)(crc >> 8U * i);
+    }
+    size_t at = 0;
+    frame[at++] = 0;
+    for (size_t begin = 0; begin <= length;) {
+        size_t run = 0;
+        while (begin + run < length && data[begin + run] != 0 && run < 254) {
+            run++;
+        }
+        frame[at++] = (unsigned char)(run + 1);
+        memcpy(&frame[at], &data[begin], run);
+        at += run;
+        begin += run < 254 ? run + 1 : run;
+    }
+    frame[at++] = 0;
+    return at;
+}
+
+static void send(const void *message, size_t length)
+{
+    unsigned char frame[LONGEST + 16];
+    const size_t size = encode(message, length, frame);
+    bench.in = (const char *)frame;
+    bench.in_length = size;
+    while (bench.in_length > 0) {
+        bench_poll();
+    }
+}
+
+static void command(unsigned char tag, const char *line)
+{
+    unsigned char message[LONGEST] = {'C', tag};
+    memcpy(message + 2, line, strlen(line));
+    send(message, 2 + strlen(line));
+}
+
+/* The next message of the console that begins with `type`; other messages are skipped. */
+static message_t next(char type)
+{
+    for (;;) {
+        message_t message = {.length = 0};
+        const unsigned char *out = (const unsigned char *)bench.out;
+        while (seen < bench.out_length && out[seen] == 0) {
+            seen++;
+        }
+        size_t end = seen;
+        while (end < bench.out_length && out[end] != 0) {
+            end++;
+        }
+        if (end == bench.out_length) {
+            return message;
+        }
+        while (seen < end) {
+            const size_t code = out[seen++];
+            CHECK(seen + code - 1 <= end);
+            memcpy(&message.bytes[message.length], &out[seen], code - 1);
+            message.length += code - 1;
+            seen += code - 1;
+            if (code < 255 && seen < end) {
+                message.bytes[message.length++] = 0;
+            }
+        }
+        CHECK(message.length > 4);
+        message.length -= 4;
+        uint32_t crc = 0;
+        for (unsigned int i = 0; i < 4; i++) {
+            crc |= (uint32_t)message.bytes[message.length + i] << 8U * i;
+        }
+        CHECK_EQUAL(crc, crc_of(message.bytes, message.length));
+        message.bytes[message.length] = 0;
+        if (message.bytes[0] == (unsigned char)type) {
+            return message;
+        }
+    }
+}
+
+static uint32_t number_in(const unsigned char *bytes)
+{
+    return bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
+}
+
+/* Checks that the next answer has this tag and text. */
+static void check_next(unsigned char tag, const char *text)
+{
+    const message_t answer = next('A');
+    if (answer.length < 2 || answer.bytes[1] != tag || strcmp((const char *)answer.bytes + 2, text) != 0) {
+        fprintf(stderr, "%u %s, not %u %s\n", answer.bytes[1], (const char *)answer.bytes + 2, tag, text);
+        exit(1);
+    }
+}
+
+/* A console with streams, connected to a program that has sent its first frame. */
+static void begin(bool enabled)
+{
+    bench_start(enabled);
+    telemetry = (epg_telemetry_t){0};
+    fake.application.telemetry = &telemetry;
+    seen = bench.out_length;
+    send("K", 1);
+}
+
+TEST(a_command_in_a_frame_has_its_answer_in_frames_with_its_tag)
+{
+    begin(true);
+    command(7, "get PID\\kp PID\\tauD");
+    bench_run(10);
+    check_next(7, "parameter PID\\kp=2.6");
+    check_next(7, "parameter PID\\tauD=0.05 unit=s");
+    check_next(7, "ok get");
+    command(8, "set PID\\kp=3");
+    bench_run(10);
+    check_next(8, "ok set");
+    command(9, "nonsense");
+    bench_run(10);
+    check_next(9, "error line there is no command 'nonsense'");
+}
+
+TEST(a_line_that_answers_no_command_has_tag_0)
+{
+    begin(true);
+    command(200, "disable");
+    bench_run(10);
+    check_next(0, "state enabled=0 fault=none");
+    check_next(200, "ok disable");
+}
+
+TEST(damaged_frames_do_nothing)
+{
+    begin(true);
+    for (size_t at = 0; at < 14; at++) {
+        for (int bit = 0; bit < 8; bit++) {
+            unsigned char frame[64];
+            const size_t size = encode("C\5disable", 9, frame);
+            CHECK(size == 16);
+            frame[1 + at] ^= (unsigned char)(1 << bit);
+            bench_send(frame, size);
+            CHECK(fake_status().enabled);
+            bench_run(150); /* the console closes a frame that does not end */
+        }
+        send("K", 1);
+    }
+    command(6, "disable");
+    bench_run(10);
+    CHECK(!fake_status().enabled);
+}
+
+TEST(lines_of_text_work_between_frames)
+{
+    begin(true);
+    CHECK_EQUAL(bench_say("set_b=4\n")[0], 0); /* the answer is a frame: the program is there */
+    CHECK_EQUAL(epg_control_setpoint(&fake.control, 1), 4.0);
+    bench_run(2100); /* the program is gone */
+    CHECK(strcmp(bench_say("set_b=5\n"), "ok setpoint\r\n") == 0);
+}
+
+/* Streams -------------------------------------------------------------------------------------------------------- */
+
+static void stream(unsigned char tag, uint32_t every, size_t count, const unsigned char *signals)
+{
+    unsigned char message[LONGEST] = {'S', tag};
+    for (unsigned int i = 0; i < 4; i++) {
+        message[2 + i] = (unsigned char)(every >> 8U * i);
+    }
+    for (size_t i = 0; i < count; i++) {
+        message[6 + 2 * i] = signals[i];
+    }
+    send(message, 6 + 2 * count);
+}
+
+static float value_in(const unsigned char *bytes)
+{
+    const uint32_t bits = number_in(bytes);
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+TEST(a_stream_has_a_row_of_every_cycle)
+{
+    begin(true);
+    fake.sensor = 0.5;
+    stream(3, 1, 2, (const unsigned char[]){1, 2});
+    bench_run(10);
+    check_next(3, "ok stream rows=37");
+    bench_run(200);
+    uint32_t number = 0;
+    uint64_t tick_ns = 0;
+    float state = -1.0F;
+    for (message_t rows = next('D'); rows.length > 0; rows = next('D')) {
+        const uint64_t first_ns = number_in(&rows.bytes[5]) | (uint64_t)number_in(&rows.bytes[9]) << 32;
+        CHECK_EQUAL(number_in(&rows.bytes[1]), number);
+        CHECK(tick_ns == 0 || first_ns == tick_ns);
+        tick_ns = first_ns;
+        for (size_t at = 13; at < rows.length; at += 8) {
+            CHECK_EQUAL(value_in(&rows.bytes[at]), 0.5F);
+            CHECK(state < 0.0F || value_in(&rows.bytes[at + 4]) == state + 1.0F);
+            state = value_in(&rows.bytes[at + 4]);
+            number++;
+            tick_ns += FAKE_PERIOD_NS;
+        }
+    }
+    CHECK(number >= 205);
+}
+
+TEST(rows_without_room_are_dropped_whole_and_leave_a_gap)
+{
+    begin(true);
+    stream(3, 2, 4, (const unsigned char[]){0, 1, 2, 3});
+    bench_run(20);
+    bench.room = 0;
+    bench_run(400);
+    bench.room = SIZE_MAX;
+    bench_run(100);
+    uint32_t number = 0;
+    uint32_t missing = 0;
+    uint64_t last_ns = 0;
+    for (message_t rows = next('D'); rows.length > 0; rows = next('D')) {
+        const uint32_t first = number_in(&rows.bytes[1]);
+        const uint64_t first_ns = number_in(&rows.bytes[5]) | (uint64_t)number_in(&rows.bytes[9]) << 32;
+        CHECK(first >= number);
+        CHECK_EQUAL((rows.length - 13) % 16, 0);
+        CHECK(last_ns == 0 || first_ns - last_ns == (first - number + 1) * 2ULL * FAKE_PERIOD_NS);
+        missing += first - number;
+        number = first + (uint32_t)((rows.length - 13) / 16);
+        last_ns = first_ns + ((rows.length - 13) / 16 - 1) * 2ULL * FAKE_PERIOD_NS;
+    }
+    CHECK(missing > 50 && missing < 200);
+    CHECK(number >= 255);
+}
+
+TEST(a_stream_that_is_impossible_is_refused)
+{
+    begin(true);
+    stream(3, 0, 1, (const unsigned char[]){0});
+    stream(4, 1, 0, NULL);
+    stream(5, 1, 33, (const unsigned char[33]){0});
+    stream(6, 1, 1, (const unsigned char[]){4});
+    bench.options.transport_rate = 11520;
+    stream(7, 1, 4, (const unsigned char[]){0, 1, 2, 3});
+    bench_run(10);
+    check_next(3, "error stream a stream has 1 to 32 signals, and a row in at least every cycle");
+    check_next(4, "error stream a stream has 1 to 32 signals, and a row in at least every cycle");
+    check_next(5, "error stream a stream has 1 to 32 signals, and a row in at least every cycle");
+    check_next(6, "error stream there is no signal with this index");
+    check_next(7, "error stream needs 17615 bytes per second of 8064 that the transport has for streams");
+    stream(8, 3, 4, (const unsigned char[]){0, 1, 2, 3});
+    bench_run(10);
+    check_next(8, "ok stream rows=25");
+    stream(9, 3, 4, (const unsigned char[]){0, 1, 2, 3});
+    bench_run(10);
+    check_next(9, "error stream a stream runs: end it first");
+}
+
+TEST(a_stream_and_a_recording_share_the_memory)
+{
+    begin(true);
+    command(1, "capture duty rows=150");
+    bench_run(10);
+    stream(2, 1, 1, (const unsigned char[]){0});
+    bench_run(200);
+    check_next(1, "ok capture rows=150");
+    check_next(2, "error stream a recording has the memory: end it first");
+    stream(3, 1, 1, (const unsigned char[]){0});
+    command(4, "capture duty rows=150");
+    command(5, "capture duty rows=75");
+    bench_run(100);
+    next('A'); /* the end of the first recording */
+    check_next(3, "ok stream rows=50");
+    check_next(4, "error capture there is only room for rows=75");
+    check_next(5, "ok capture rows=75");
+    send("S\6", 2);
+    bench_run(10);
+    next('A');
+    check_next(6, "ok stream");
+    command(7, "capture duty rows=150");
+    bench_run(10);
+    check_next(7, "ok capture rows=150");
+}
+
+TEST(a_stream_ends_with_the_connection_and_with_the_silence_of_the_program)
+{
+    begin(true);
+    stream(3, 1, 1, (const unsigned char[]){0});
+    bench_run(10);
+    CHECK(!epg_telemetry_idle(&telemetry));
+    bench.connected = false;
+    bench_run(10);
+    CHECK(epg_telemetry_idle(&telemetry));
+    bench.connected = true;
+    bench_run(10);
+    send("K", 1);
+    stream(3, 1, 1, (const unsigned char[]){0});
+    bench_run(1500);
+    CHECK(!epg_telemetry_idle(&telemetry));
+    bench_run(600);
+    CHECK(epg_telemetry_idle(&telemetry));
+}
+
+/* Leases --------------------------------------------------------------------------------------------------------- */
+
+/* Sends the newest number back. */
+static bool respond(void)
+{
+    bool found = false;
+    unsigned char response[5] = {'R'};
+    for (message_t number = next('N'); number.length > 0; number = next('N')) {
+        CHECK_EQUAL(number.length, 5);
+        memcpy(&response[1], &number.bytes[1], 4);
+        found = true;
+    }
+    if (found) {
+        send(response, sizeof response);
+    }
+    return found;
+}
+
+TEST(a_target_on_a_lease_stays_enabled_while_its_numbers_come_back)
+{
+    begin(false);
+    command(1, "enable leased");
+    bench_run(10);
+    CHECK(fake_status().enabled && fake_status().leased);
+    for (int i = 0; i < 100; i++) {
+        bench_run(90);
+        CHECK(respond());
+        CHECK(fake_status().enabled);
+    }
+    /* The newest number was sent at most 50 ms before the last response. */
+    unsigned int ms = 0;
+    while (fake_status().enabled) {
+        bench_run(1);
+        ms++;
+        CHECK(ms <= 300);
+    }
+    CHECK(ms >= 245);
+    CHECK_EQUAL(fake_status().fault, EPG_FAULT_OPERATOR);
+    CHECK_EQUAL(fake.actuator, 0.0);
+}
+
+TEST(a_lease_without_a_response_ends)
+{
+    begin(false);
+    command(1, "enable leased");
+    bench_run(295);
+    CHECK(fake_status().enabled);
+    bench_run(10);
+    CHECK(!fake_status().enabled);
+}
+
+TEST(the_control_side_ends_a_lease_by_itself)
+{
+    begin(false);
+    command(1, "enable leased");
+    bench_run(10);
+    fake_cycles(290);
+    CHECK(fake_status().enabled);
+    fake_cycles(10);
+    CHECK(!fake_status().enabled);
+}
+
+TEST(only_numbers_of_the_last_300_ms_count)
+{
+    begin(false);
+    command(1, "enable leased");
+    bench_run(20);
+    const message_t first = next('N');
+    CHECK(first.length == 5);
+    unsigned char response[5] = {'R'};
+    memcpy(&response[1], &first.bytes[1], 4);
+    const uint64_t begin_ns = fake_port.now_ns;
+    while (fake_status().enabled) { /* the first number again and again */
+        send(response, sizeof response);
+        bench_run(8);
+        CHECK(fake_port.now_ns - begin_ns < 300000000U);
+    }
+    CHECK(fake_port.now_ns - begin_ns > 260000000U);
+    command(2, "enable leased");
+    bench_run(10);
+    for (unsigned int ms = 0; fake_status().enabled; ms++) { /* numbers that were never sent */
+        response[1]++;
+        response[3] = (unsigned char)ms;
+        send(response, sizeof response);
+        CHECK(ms < 400);
+    }
+}
+
+TEST(a_lease_ends_neither_an_enabling_by_others_nor_starts_over_it)
+{
+    begin(true);
+    command(1, "enable leased");
+    bench_run(10);
+    check_next(1, "error enable the target is enabled already, without a lease");
+    bench_run(1000);
+    CHECK(fake_status().enabled && !fake_status().leased);
+    bench.connected = false;
+    bench_run(1000);
+    CHECK(fake_status().enabled);
+    bench.connected = true;
+    bench_run(10);
+    CHECK(has_line(bench_say("enable leased\n"), "error enable a lease is for programs that use frames"));
+}
+
+/** Frames, parts of frames and random bytes in any order, while the reader connects, disconnects and reads at random. */
+TEST(any_bytes_are_harmless)
+{
+    static const char *const lines[] = {"get",           "watch",        "ports",       "stats",
+                                        "enable leased", "capture duty", "disable",     "jog motor 0.1 30",
+                                        "set_b=1",       "version",      "capture read"};
+    begin(true);
+    srand(11);
+    for (int i = 0; i < 20000; i++) {
+        unsigned char message[300] = {(unsigned char)"CSRKX"[rand() % 5], (unsigned char)rand()};
+        size_t length = 2 + (size_t)rand() % 90U;
+        for (size_t k = 2; k < length; k++) {
+            message[k] = (unsigned char)(rand() % 3 > 0 ? rand() % 4 : rand());
+        }
+        if (message[0] == 'C') {
+            const char *line = lines[(size_t)rand() % (sizeof lines / sizeof lines[0])];
+            length = 2 + strlen(line);
+            memcpy(message + 2, line, strlen(line));
+        }
+        unsigned char frame[LONGEST];
+        const size_t size = encode(message, length, frame);
+        if (rand() % 4 == 0) {
+            frame[(size_t)rand() % size] = (unsigned char)rand();
+        }
+        bench.connected = rand() % 300 > 0;
+        bench.room = rand() % 3 > 0 ? SIZE_MAX : (size_t)rand() % 60U;
+        bench.in = (const char *)frame;
+        bench.in_length = rand() % 9 > 0 ? size : (size_t)rand() % size;
+        for (int polls = 0; bench.in_length > 0 && polls < 3000; polls++) {
+            bench_poll();
+            bench.room = rand() % 3 > 0 ? SIZE_MAX : bench.room;
+        }
+        if (bench.out_length > sizeof bench.out / 2) {
+            bench.out_length = 0;
+        }
+    }
+    bench.connected = true;
+    bench.room = SIZE_MAX;
+    bench_run(5000);
+    CHECK(has_line(bench_say("version\n"), "ok version"));
+}
+
+RUN(ENTRY(a_command_in_a_frame_has_its_answer_in_frames_with_its_tag), ENTRY(a_line_that_answers_no_command_has_tag_0),
+    ENTRY(damaged_frames_do_nothing), ENTRY(lines_of_text_work_between_frames),
+    ENTRY(a_stream_has_a_row_of_every_cycle), ENTRY(rows_without_room_are_dropped_whole_and_leave_a_gap),
+    ENTRY(a_stream_that_is_impossible_is_refused), ENTRY(a_stream_and_a_recording_share_the_memory),
+    ENTRY(a_stream_ends_with_the_connection_and_with_the_silence_of_the_program),
+    ENTRY(a_target_on_a_lease_stays_enabled_while_its_numbers_come_back), ENTRY(a_lease_without_a_response_ends),
+    ENTRY(the_control_side_ends_a_lease_by_itself), ENTRY(only_numbers_of_the_last_300_ms_count),
+    ENTRY(a_lease_ends_neither_an_enabling_by_others_nor_starts_over_it), ENTRY(any_bytes_are_harmless))
