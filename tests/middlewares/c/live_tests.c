@@ -421,7 +421,7 @@ TEST(only_numbers_of_the_last_300_ms_count)
         response[1]++;
         response[3] = (unsigned char)ms;
         send(response, sizeof response);
-        CHECK(ms < 400);
+        CHECK(ms < 800);
     }
 }
 
