@@ -39,6 +39,7 @@ COMMANDS = {
     "simulate": "run a target or a system through a scenario and check its limits",
     "flash": "write the images of a system to its boards",
     "launch": "write a ROS 2 launch file, or systemd units, for the agents of targets",
+    "live": "show the values of a running target, record them, and send it commands",
     "record": "record the topics of a target or of a system on ROS 2",
     "describe": "write layouts for PlotJuggler and Foxglove with the values of a target",
     "plot": "compare a recorded run with another one, or with its simulation",

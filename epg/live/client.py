@@ -31,7 +31,6 @@ class Carrier(Protocol):
 
     def read(self, seconds: float) -> bytes: ...
     def write(self, data: bytes) -> None: ...
-    def close(self) -> None: ...
 
 
 class Refused(Exception):
@@ -68,6 +67,7 @@ class Description:
     node: str
     version: str
     hash: str
+    period: float  # of the control cycle, in seconds
     setpoints: tuple[str, ...]
     publications: tuple[str, ...]
     signals: tuple[Signal, ...]
@@ -78,7 +78,7 @@ class Description:
 
 @dataclass(frozen=True)
 class Rows:
-    """Rows of a stream.  ``number`` and ``tick`` (s) are those of the first row; ``values`` has the rows in their order."""
+    """Rows of a stream in their order.  ``number`` and ``tick`` (s) are those of the first row."""
 
     number: int
     tick: float
@@ -122,7 +122,7 @@ class Client:
         try:
             self.description = self._describe()
         except BaseException:
-            self.close()
+            self.stop()
             raise
 
     # Commands
@@ -185,14 +185,11 @@ class Client:
         """
         return tuple(_parameter(line) for line in self.command("get") if line.startswith("parameter "))
 
-    def close(self) -> None:
-        """Ends the connection.  A target that was enabled on a lease becomes disabled."""
-        if self._over.is_set() and not self._thread.is_alive():
-            return
+    def stop(self) -> None:
+        """Ends the connection, without closing the port.  A target that was enabled on a lease becomes disabled."""
         self._over.set()
         if threading.current_thread() is not self._thread:
             self._thread.join()
-        self._port.close()
 
     def _describe(self) -> Description:
         words = dict(_words(self.command("version")[-1]))
@@ -213,6 +210,7 @@ class Client:
             node=words.get("node", ""),
             version=words.get("epg", ""),
             hash=words.get("hash", ""),
+            period=float(words.get("period", "0.001")),
             setpoints=names("setpoint"),
             publications=names("publication"),
             signals=signals,

@@ -65,6 +65,8 @@ void epg_console_version(epg_console_session_t *session, const epg_console_comma
     epg_console_node(session);
     epg_console_word(&session->output, "epg", target->version);
     epg_console_word(&session->output, "hash", target->hash);
+    epg_console_key(&session->output, "period");
+    epg_console_seconds(&session->output, target->application->period_ns);
     if (target->application->parameters != NULL) {
         epg_console_word(&session->output, "stored", stored_name(target->application->parameters));
     }

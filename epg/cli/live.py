@@ -1,0 +1,240 @@
+# SPDX-License-Identifier: Apache-2.0
+"""``epg live``: shows the values of a running target, records them, and sends it commands."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import signal
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from epg.diagnostics import Diagnostics
+from epg.source import Span
+
+if TYPE_CHECKING:
+    from epg.live.client import Client
+    from epg.live.rows import Recording, Sink
+    from epg.live.screen import Screen
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "port",
+        type=Path,
+        nargs="?",
+        metavar="PORT",
+        help="serial port, or terminal of a host program; none: lists them",
+    )
+    parser.add_argument(
+        "--baud", type=int, default=115200, metavar="N", help="bits per second of a UART; default: 115200"
+    )
+    parser.add_argument(
+        "--signals", metavar="NAME,...", help="signals to show and to record; default: the first 32; none: no stream"
+    )
+    parser.add_argument(
+        "--every",
+        type=_whole,
+        default=1,
+        metavar="N",
+        help="a row in every N-th control cycle; default: as often as possible",
+    )
+    parser.add_argument(
+        "--send",
+        action="append",
+        default=[],
+        metavar="LINE",
+        help="a command of the console to send first; can be repeated",
+    )
+    parser.add_argument("--duration", type=float, metavar="SECONDS", help="length; default: until Ctrl-C")
+    parser.add_argument("--csv", type=Path, metavar="FILE", help="also writes the rows to a CSV file")
+    parser.add_argument("--mcap", type=Path, metavar="FILE", help="also writes the rows for PlotJuggler and Foxglove")
+    parser.add_argument("--force", action="store_true", help="overwrite these files")
+
+
+def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+    from epg.live.client import Client, Lost, Refused
+    from epg.live.port import Port, PortError
+    from epg.live.rows import Recording, Stream
+    from epg.live.screen import Screen, Values
+
+    if options.port is None:
+        return _list(options)
+    for file in (options.csv, options.mcap):
+        if file is not None and file.exists() and not options.force:
+            diagnostics.error("file-exists", Span(str(file)), "this file exists", hint="--force overwrites it")
+    diagnostics.stop_if_errors()
+    at = Span(str(options.port))
+    relay = _Relay()
+    try:
+        with Port(options.port, options.baud) as port:
+            client = Client(port, relay.told, relay.numbered)
+            try:
+                names = _chosen(client, options, diagnostics)
+                values = Values(len(names))
+                shows = sys.stdin.isatty() and sys.stdout.isatty() and not options.json
+                with _sinks(options, client, names) as sinks:
+                    recording = Recording(Stream(names), [*sinks, values] if shows else sinks)
+                    _start(recording, client, names, options)
+                    for line in options.send:
+                        answer = client.command("enable leased" if line == "enable" else line)
+                        if not shows and not options.json:
+                            print("\n".join(answer), flush=True)
+                    end = time.monotonic() + options.duration if options.duration is not None else float("inf")
+                    if shows:
+                        relay.screen = Screen(client, names, values, recording)
+                        relay.screen.run(end)
+                    elif options.duration is not None or not options.send:
+                        relay.wait(client, recording, end)
+                    if names and not relay.lost:
+                        client.stop_stream()
+                    recording.drain()
+                if not options.json and names:
+                    stream = recording.stream
+                    print(f"{stream.rows} rows, {stream.dropped} dropped, {client.damaged} damaged frames")
+            finally:
+                client.stop()
+    except PortError as problem:
+        diagnostics.error("live-port", at, str(problem), hint=problem.hint)
+    except Lost as problem:
+        hint = (
+            "the firmware needs the console on this port (docs/console.md); reset the board; with a UART, check --baud"
+        )
+        diagnostics.error("live-lost", at, str(problem), hint=hint)
+    except Refused as problem:
+        diagnostics.error("live-refused", at, f"the target refused it: {problem}", hint="'help' lists the commands")
+    if relay.lost:
+        diagnostics.error("live-lost", at, relay.lost, hint="look at the cable and at the program, and start again")
+    return 0
+
+
+class _Relay:
+    """Passes lines and numbers to the screen, or answers without one."""
+
+    def __init__(self) -> None:
+        self.screen: Screen | None = None
+        self.lost = ""
+        self._numbers: list[int] = []
+
+    def told(self, line: str) -> None:
+        if line.startswith("lost "):
+            self.lost = line.removeprefix("lost ")
+        if self.screen is not None:
+            self.screen.told(line)
+
+    def numbered(self, number: int) -> None:
+        if self.screen is not None:
+            self.screen.numbered(number)
+        else:
+            self._numbers.append(number)
+
+    def wait(self, client: Client, recording: Recording, end: float) -> None:
+        """Waits until Ctrl-C, until the connection is lost, or until the monotonic time ``end``."""
+        stopped: list[int] = []
+        before = {
+            number: signal.signal(number, lambda number, _: stopped.append(number))
+            for number in (signal.SIGINT, signal.SIGTERM)
+        }
+        try:
+            while not stopped and not self.lost and time.monotonic() < end:
+                while self._numbers:
+                    client.respond(self._numbers.pop(0))
+                recording.drain()
+                time.sleep(0.02)
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
+
+
+def _chosen(client: Client, options: argparse.Namespace, diagnostics: Diagnostics) -> list[str]:
+    """The names of the signals of ``--signals``."""
+    from epg.diagnostics import did_you_mean
+
+    known = [signal.name for signal in client.description.signals]
+    if options.signals is None:
+        return known[:32]
+    names = []
+    for word in filter(None, options.signals.split(",")):
+        ends = [name for name in known if name == word or name.split(".", 1)[-1] == word]
+        if word == "none":
+            continue
+        if len(ends) != 1:
+            message = f"there is no signal '{word}'" if not ends else f"'{word}' is the name of several signals"
+            diagnostics.error(
+                "unknown-signal", Span(str(options.port)), message, hint=did_you_mean(word, known, "signals")
+            )
+        names += ends[:1]
+    if len(names) > 32:
+        diagnostics.error(
+            "unknown-signal", Span(str(options.port)), f"a stream has at most 32 signals, not {len(names)}"
+        )
+    diagnostics.stop_if_errors()
+    return names
+
+
+@contextlib.contextmanager
+def _sinks(options: argparse.Namespace, client: Client, names: list[str]) -> Iterator[list[Sink]]:
+    """The files of the command line, open."""
+    from epg import bootstrap
+    from epg.live.rows import CsvFile, JsonLines, McapFile
+
+    sinks: list[Sink] = []
+    try:
+        if options.csv is not None:
+            sinks.append(CsvFile(options.csv, names))
+        if options.mcap is not None:
+            bootstrap.ensure("mcap")
+            sinks.append(McapFile(options.mcap, names, f"/{client.description.node or 'target'}", time.time_ns()))
+        if options.json:
+            sinks.append(JsonLines(sys.stdout, names))
+        yield sinks
+    finally:
+        for sink in sinks:
+            sink.close()
+
+
+def _start(recording: Recording, client: Client, names: list[str], options: argparse.Namespace) -> None:
+    if not names:
+        return
+    known = [signal.name for signal in client.description.signals]
+    every = recording.start(client, [known.index(name) for name in names], options.every)
+    if every != options.every and not options.json:
+        sys.stderr.write(f"a row in every {every}th control cycle: the port carries no more\n")
+
+
+def _list(options: argparse.Namespace) -> int:
+    from epg.cli.report import to_json
+    from epg.cli.table import table
+    from epg.live.found import look_at, ports
+
+    found = [look_at(path, device) for path, device in ports().items()]
+    if options.json:
+        data = [
+            {
+                "port": str(one.path),
+                "device": one.device,
+                "name": one.target.name if one.target else None,
+                "hash": one.target.hash if one.target else None,
+                "reason": one.reason,
+            }
+            for one in found
+        ]
+        sys.stdout.write(to_json({"ports": data}))
+    elif found:
+        rows = [
+            (str(one.path), f"{one.target.name}, EPG {one.target.version}" if one.target else one.reason, one.device)
+            for one in found
+        ]
+        print(table(("port", "target", "device"), rows))
+    else:
+        print("there are no serial ports; a host program has one with --console-pty PATH")
+    return 0
+
+
+def _whole(text: str) -> int:
+    if not text.isdigit() or int(text) == 0:
+        raise argparse.ArgumentTypeError("must be a whole number of 1 or more")
+    return int(text)

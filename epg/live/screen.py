@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The screen of ``epg live`` in a terminal: values that move, the answers to commands, and a line for the next one."""
+
+from __future__ import annotations
+
+import os
+import select
+import shutil
+import sys
+import termios
+import threading
+import time
+import tty
+from collections import deque
+from collections.abc import Iterable
+from types import TracebackType
+
+from epg.live.client import Client, Lost, Refused
+from epg.live.rows import Recording, Row
+
+PERIOD = 0.1
+"""Seconds between two pictures."""
+ANSWER = 0.02
+"""Seconds between two looks at the keyboard and at the numbers of a lease."""
+LINES = 8
+"""Lines of answers on the screen."""
+_BARS = "▁▂▃▄▅▆▇█"
+_HISTORY = 30
+_END = ("\x03", "\x04")
+
+
+class Values:
+    """A sink of rows that keeps the newest value of each signal, and one value of each past picture."""
+
+    def __init__(self, count: int) -> None:
+        self._new: list[list[float]] = [[] for _ in range(count)]
+        self.newest = [float("nan")] * count
+        self.history: list[deque[float]] = [deque(maxlen=_HISTORY) for _ in range(count)]
+
+    def write(self, rows: Iterable[Row]) -> None:
+        for row in rows:
+            for values, value in zip(self._new, row.values, strict=True):
+                values.append(value)
+
+    def close(self) -> None:
+        """Nothing has to be closed."""
+
+    def picture(self) -> None:
+        """Takes the values since the last picture.  Of them, the history keeps the one farthest from the last one."""
+        new, self._new = self._new, [[] for _ in self._new]
+        for index, values in enumerate(new):
+            if values:
+                last = self.newest[index]
+                self.history[index].append(max(values, key=lambda value, last=last: abs(value - last)))  # type: ignore[misc]
+                self.newest[index] = values[-1]
+
+
+def sparkline(values: Iterable[float]) -> str:
+    """A small curve of block characters.
+
+    >>> sparkline([0.0, 0.5, 1.0])
+    '▁▅█'
+    """
+    finite = [value for value in values if value - value == 0]
+    if not finite:
+        return ""
+    low, high = min(finite), max(finite)
+    scale = (len(_BARS) - 1) / (high - low) if high > low else 0.0
+    return "".join(_BARS[int((value - low) * scale + 0.5)] for value in finite)
+
+
+class Screen:
+    """The screen and the keyboard.
+
+    The space bar disables the target if the line is empty.  ``enable`` enables it on a lease: the numbers of the target
+    come back only while this loop runs.
+    """
+
+    def __init__(self, client: Client, names: list[str], values: Values, recording: Recording) -> None:
+        self._client, self._names, self._values, self._recording = client, names, values, recording
+        units = {signal.name: signal.unit for signal in client.description.signals}
+        self._units = [units[name] for name in names]
+        self._line = ""
+        self._said: deque[str] = deque(maxlen=LINES)
+        self._numbers: deque[int] = deque()
+        self._state = ""
+        self._stopping = False
+        self.over = False
+
+    def told(self, line: str) -> None:
+        """Takes a line that answers no command."""
+        if line.startswith("state "):
+            self._state = line.removeprefix("state ")
+        self._said.append(line)
+        self.over = self.over or line.startswith("lost ")
+
+    def numbered(self, number: int) -> None:
+        """Takes a number of a lease."""
+        self._numbers.append(number)
+
+    def run(self, end: float) -> None:
+        """Shows the screen until Ctrl-C, until the connection is lost, or until the monotonic time ``end``."""
+        self._ask("stats")
+        due = 0.0
+        with _Keyboard() as keyboard:
+            while not self.over and time.monotonic() < end:
+                while self._numbers:
+                    self._client.respond(self._numbers.popleft())
+                self._recording.drain()
+                for key in keyboard.keys(ANSWER):
+                    self._press(key)
+                if time.monotonic() >= due:
+                    due = time.monotonic() + PERIOD
+                    self._values.picture()
+                    self._draw()
+        sys.stdout.write("\n")
+
+    def _press(self, key: str) -> None:
+        if key in _END:
+            self.over = True
+        elif key == " " and not self._line:
+            self._ask("disable")
+        elif key in "\r\n":
+            line, self._line = self._line.strip(), ""
+            if line:
+                self._ask("enable leased" if line == "enable" else line)
+        elif key in "\x08\x7f":
+            self._line = self._line[:-1]
+        elif key.isprintable():
+            self._line += key
+
+    def _ask(self, line: str) -> None:
+        """Sends a command, and shows its answer when it comes."""
+        threading.Thread(target=self._answer, args=(line,), daemon=True).start()
+
+    def _answer(self, line: str) -> None:
+        try:
+            if line == "disable":
+                self._client.disable()
+                self._said.append("ok disable")
+                return
+            lines = self._client.command(line)
+            if line == "stats":
+                self._state = lines[0].removeprefix("stat ")
+                lines = lines[-1:]
+            self._said.extend(lines)
+        except Refused as refusal:
+            self._said.append(f"error {line.split(' ')[0]} {refusal}")
+        except (Lost, UnicodeEncodeError) as problem:
+            self._said.append(str(problem))
+
+    def _draw(self) -> None:
+        columns, height = shutil.get_terminal_size()
+        description = self._client.description
+        width = max(map(len, self._names), default=0)
+        lines = [f"{description.name}  EPG {description.version}  {self._state}", ""]
+        room = height - len(lines) - LINES - 4
+        for index, name in enumerate(self._names[: max(room, 1)]):
+            value = f"{self._values.newest[index]:>12.6g} {self._units[index]:<6}"
+            lines.append(f"{name:<{width}} {value} {sparkline(self._values.history[index])}")
+        if len(self._names) > room:
+            lines.append(f"... {len(self._names) - max(room, 1)} more: the window is too small")
+        lines += ["", *self._said, f"> {self._line}", "space: disable   enable: while this runs   help   Ctrl-C: end"]
+        sys.stdout.write("\x1b[H" + "".join(f"{line[:columns]}\x1b[K\r\n" for line in lines[:-1]))
+        sys.stdout.write(f"{lines[-1][:columns]}\x1b[K\x1b[J")
+        sys.stdout.flush()
+
+
+class _Keyboard:
+    """The terminal, which gives each key at once and shows none."""
+
+    def __enter__(self) -> _Keyboard:
+        self._file = sys.stdin.fileno()
+        self._before = termios.tcgetattr(self._file)
+        tty.setraw(self._file)
+        sys.stdout.write("\x1b[2J")
+        return self
+
+    def keys(self, seconds: float) -> str:
+        """The keys that were pressed, after at most ``seconds``."""
+        if not select.select([self._file], [], [], seconds)[0]:
+            return ""
+        return os.read(self._file, 1024).decode("utf-8", "ignore") or "\x04"
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        termios.tcsetattr(self._file, termios.TCSADRAIN, self._before)
