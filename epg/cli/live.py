@@ -67,13 +67,12 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         if file is not None and file.exists() and not options.force:
             diagnostics.error("file-exists", Span(str(file)), "this file exists", hint="--force overwrites it")
     diagnostics.stop_if_errors()
-    at = Span(str(options.port))
     relay = _Relay()
     try:
         with Port(options.port, options.baud) as port:
             client = Client(port, relay.told, relay.numbered)
             try:
-                names = _chosen(client, options, diagnostics)
+                names = _chosen(client, options)
                 values = Values(len(names))
                 shows = sys.stdin.isatty() and sys.stdout.isatty() and not options.json
                 with _sinks(options, client, names) as sinks:
@@ -98,17 +97,25 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
             finally:
                 client.stop()
     except PortError as problem:
-        diagnostics.error("live-port", at, str(problem), hint=problem.hint)
-    except Lost as problem:
-        hint = (
-            "the firmware needs the console on this port (docs/console.md); reset the board; with a UART, check --baud"
-        )
-        diagnostics.error("live-lost", at, str(problem), hint=hint)
+        diagnostics.error("live-port", Span(str(options.port)), str(problem), hint=problem.hint)
     except Refused as problem:
-        diagnostics.error("live-refused", at, f"the target refused it: {problem}", hint="'help' lists the commands")
+        return _failed(
+            options, f"the target refused it: {problem}", "the command 'help' lists the commands, 'ports' the names"
+        )
+    except Lost as problem:
+        relay.lost = relay.lost or str(problem)
     if relay.lost:
-        diagnostics.error("live-lost", at, relay.lost, hint="look at the cable and at the program, and start again")
+        hint = (
+            "the firmware needs the console on this port; reset the board, look at the cable; with a UART, check --baud"
+        )
+        return _failed(options, relay.lost, hint)
     return 0
+
+
+def _failed(options: argparse.Namespace, message: str, hint: str) -> int:
+    """Says why it cannot go on with the target.  Returns the exit status."""
+    sys.stderr.write(f"epg: {options.port}: {message}\nhint: {hint}\n")
+    return 1
 
 
 class _Relay:
@@ -149,29 +156,26 @@ class _Relay:
                 signal.signal(number, handler)
 
 
-def _chosen(client: Client, options: argparse.Namespace, diagnostics: Diagnostics) -> list[str]:
-    """The names of the signals of ``--signals``."""
+def _chosen(client: Client, options: argparse.Namespace) -> list[str]:
+    """The names of the signals of ``--signals``.
+
+    :raises Refused: the target does not have them
+    """
     from epg.diagnostics import did_you_mean
+    from epg.live.client import Refused
 
     known = [signal.name for signal in client.description.signals]
     if options.signals is None:
         return known[:32]
     names = []
-    for word in filter(None, options.signals.split(",")):
-        ends = [name for name in known if name == word or name.split(".", 1)[-1] == word]
-        if word == "none":
-            continue
-        if len(ends) != 1:
-            message = f"there is no signal '{word}'" if not ends else f"'{word}' is the name of several signals"
-            diagnostics.error(
-                "unknown-signal", Span(str(options.port)), message, hint=did_you_mean(word, known, "signals")
-            )
-        names += ends[:1]
+    for word in options.signals.split(",") if options.signals != "none" else ():
+        found = [name for name in known if name == word or name.split(".", 1)[-1] == word]
+        if len(found) != 1:
+            problem = f"there is no signal '{word}'" if not found else f"several signals have the name '{word}'"
+            raise Refused(f"{problem} ({did_you_mean(word, known, 'signals')})")
+        names += found
     if len(names) > 32:
-        diagnostics.error(
-            "unknown-signal", Span(str(options.port)), f"a stream has at most 32 signals, not {len(names)}"
-        )
-    diagnostics.stop_if_errors()
+        raise Refused(f"a stream has at most 32 signals, not {len(names)}")
     return names
 
 

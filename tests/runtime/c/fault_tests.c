@@ -142,7 +142,7 @@ TEST(faults_have_names)
     static const char *const names[] = {"none",      "not finite", "model stopped", "overrun", "setpoint timeout",
                                         "fail-safe", "stall",      "unknown",       "unknown", "unknown",
                                         "unknown",   "watchdog",   "processor",     "output",  "tick",
-                                        "priority",  "unknown"};
+                                        "priority",  "operator",   "unknown"};
     for (unsigned int i = 0; i < sizeof names / sizeof names[0]; i++) {
         CHECK(strcmp(epg_target_fault(&target, (epg_fault_t)i), names[i]) == 0);
     }

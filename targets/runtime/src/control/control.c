@@ -372,7 +372,7 @@ bool epg_control_observe(epg_control_t *control, epg_status_t *status)
     return epg_exchange_read(&control->observer_exchange, status);
 }
 
-static void request(epg_control_t *control, unsigned int bits)
+static void send_request(epg_control_t *control, unsigned int bits)
 {
     const unsigned int sequence = (atomic_load(&control->request) | REQUEST_BITS) + 1U;
     atomic_store(&control->request, sequence | bits);
@@ -380,13 +380,13 @@ static void request(epg_control_t *control, unsigned int bits)
 
 void epg_control_request(epg_control_t *control, bool enable)
 {
-    request(control, enable ? ENABLE : 0U);
+    send_request(control, enable ? ENABLE : 0U);
 }
 
 void epg_control_request_leased(epg_control_t *control, uint64_t until_ns)
 {
     epg_control_extend(control, until_ns);
-    request(control, ENABLE | LEASED);
+    send_request(control, ENABLE | LEASED);
 }
 
 void epg_control_extend(epg_control_t *control, uint64_t until_ns)
