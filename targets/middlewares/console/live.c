@@ -15,7 +15,7 @@ enum {
     BYTE_MS = 100,     /* a frame in which no byte arrives for this time has ended */
     LEASE_MS = 300,    /* a lease ends this time after the sending of the newest number that was sent back */
     NUMBER_MS = 50,    /* time between two numbers */
-    FRAMES = 4,        /* frames of rows per poll */
+    FRAMES = 2,        /* frames of rows per poll */
     ROWS_SIZE = 216,   /* largest number of bytes of values in a frame */
     ROWS_OVERHEAD = 1 + 4 + 8 + EPG_CONSOLE_FRAME_CRC + 4, /* bytes of a frame of rows without the values */
     RESERVE = 256,                                         /* bytes of output that rows leave free for answers */
@@ -47,8 +47,7 @@ static bool read_stream(epg_console_session_t *session, const uint8_t *bytes, si
                         epg_telemetry_request_t *request)
 {
     const epg_target_t *target = session->target;
-    if (length < 6 || length % 2 != 0 || (length - 4) / 2 > EPG_TELEMETRY_SIGNALS ||
-        whole_number(bytes, 4) == 0) {
+    if (length < 6 || length % 2 != 0 || (length - 4) / 2 > EPG_TELEMETRY_SIGNALS || whole_number(bytes, 4) == 0) {
         epg_console_error(session, "stream", "a stream has 1 to 32 signals, and a row in at least every cycle", NULL);
         return false;
     }
