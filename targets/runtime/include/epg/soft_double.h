@@ -14,11 +14,13 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Bit 3 of __ARM_FP: double arithmetic (Arm C Language Extensions, 6.5.1). */
+/* Bit 3 of __ARM_FP: double arithmetic (Arm C Language Extensions, 6.5.1).  A test can define it before. */
+#ifndef EPG_SOFT_DOUBLE
 #if defined(__ARM_ARCH) && (!defined(__ARM_FP) || (__ARM_FP & 8) == 0)
 #define EPG_SOFT_DOUBLE 1
 #else
 #define EPG_SOFT_DOUBLE 0
+#endif
 #endif
 
 /** Returns an integer with the order of the numbers: 0 for both zeros, negative for negative numbers. */
@@ -41,7 +43,7 @@ static inline bool epg_at_most(double a, double b)
     return EPG_SOFT_DOUBLE ? epg_order(a) <= epg_order(b) : a <= b;
 }
 
-/** Returns `offset + (double)number * scale`. */
+/** Returns `offset + (double)number * scale`.  `scale` must not be 0: the sign of a zero could differ. */
 static inline double epg_scaled(int64_t number, double scale, double offset)
 {
     uint64_t bits;
@@ -50,7 +52,7 @@ static inline double epg_scaled(int64_t number, double scale, double offset)
     if (!EPG_SOFT_DOUBLE || small != number || small == 0 || bits != 0U) {
         return offset + (double)number * scale;
     }
-    return (double)small * scale; /* the sum of 0 and a number that is not 0 */
+    return (double)small * scale; /* the sum of 0 and a number that is not 0, because |small| is at least 1 */
 }
 
 #endif
