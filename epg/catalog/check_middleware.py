@@ -29,9 +29,9 @@ def check_middleware(node: YamlNode, diagnostics: Diagnostics) -> None:
         diagnostics.error("missing-key", node.key_span("uses"), message, hint="add 'node' to 'uses'")
     if "capture" in texts_of(node, "uses"):
         size = options.get("capture")
-        if size is None or "type" not in size or size["type"].value != "integer" or "default" not in size:
+        if size is None or "type" not in size or size["type"].value != "integer":
             message = "a middleware that uses 'capture' must have an option 'capture'"
-            hint = "add 'capture: {type: integer, minimum: 0, default: 2048, description: size of a recording}'"
+            hint = "add 'capture: {type: integer, minimum: 0, description: size of a recording}'"
             diagnostics.error("missing-key", node.key_span("uses"), message, hint=hint)
     if node["connection"].value != "none" and "driver" not in node and not _unfinished(node):
         message = "a middleware that connects to something must have a 'driver'"

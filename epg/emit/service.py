@@ -21,6 +21,9 @@ from epg.emit.topics import Macro
 from epg.resolve.application import Application, ResolvedComponent
 from epg.resolve.parameters import is_limited
 
+CAPTURE, CAPTURE_ON_COMPUTER = 256, 16384
+"""The default of the option ``capture``: a chip's memory is small."""
+
 
 @dataclass(frozen=True)
 class SignalView:
@@ -134,8 +137,8 @@ def service_of(app: Application, macro: Macro, symbols: Mapping[str, Code]) -> S
     time_index = published + len(signals) if "signals" in uses or node else None
     monitor_count = published if time_index is None else time_index + 1
     jog = "jog" in uses
-    captures = [options.get("capture")] if "capture" in middleware.uses else []
-    captures += [communication.console_options.get("capture")] if console and "capture" in console.uses else []
+    captures = [_capture(app, options)] if "capture" in middleware.uses else []
+    captures += [_capture(app, communication.console_options)] if console and "capture" in console.uses else []
     return Service(
         middleware=_view(app, middleware, "middleware", options, communication.transport, monitor_count),
         console=_view(
@@ -151,10 +154,18 @@ def service_of(app: Application, macro: Macro, symbols: Mapping[str, Code]) -> S
         store=node or "parameters" in uses,
         parameters=tuple(parameter_views(app)) if "parameters" in uses or app.ros_parameters else (),
         has_limits=any(is_limited(setting) for setting in app.parameter_settings.values()),
-        capture=max((size for size in captures if isinstance(size, int)), default=0),
+        capture=max(captures, default=0),
         actuators=tuple(a for c in app.components for a in _actuators(c, macro, symbols[c.name])) if jog else (),
         encoders=tuple(e for c in app.components for e in _encoders(c, macro, symbols[c.name])) if jog else (),
     )
+
+
+def _capture(app: Application, options: Mapping[str, object]) -> int:
+    """The number of values for recordings and streams.  The platforms that simulate a plant run on a computer."""
+    stated = options.get("capture")
+    if isinstance(stated, int):
+        return stated
+    return CAPTURE_ON_COMPUTER if app.target.platform.simulates_plant else CAPTURE
 
 
 def _view(

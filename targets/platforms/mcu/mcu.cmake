@@ -32,8 +32,8 @@ function(_epg_mcu_name_archives suffix)
 endfunction()
 
 # Sets <result> to the options of the compiler for code of the communication side: for size instead of speed, except in
-# Debug builds.  Nothing in it is time-critical.  On a Pico it runs from flash, where small code also leaves more of the
-# cache to others.
+# Debug builds.  Nothing in it is time-critical.  Where it runs from flash, small code also leaves more of the cache to
+# others.
 function(_epg_mcu_small_options result)
   set(${result} "$<$<CONFIG:Release,RelWithDebInfo>:-Os>" PARENT_SCOPE)
 endfunction()
