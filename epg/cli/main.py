@@ -14,6 +14,7 @@ The exit status is:
 from __future__ import annotations
 
 import argparse
+import gc
 import importlib
 import os
 import sys
@@ -51,6 +52,10 @@ COMMANDS = {
 WITHOUT_PACKAGES = ("doctor", "find-tools")
 """The commands that must run while Python packages are missing.  They install none."""
 
+WITHOUT_COLLECTOR = ("check", "generate", "generate-model", "generate-system", "generate-all")
+"""The commands that run without Python's garbage collector: they end after a moment, and almost all of their objects
+live as long as they run."""
+
 EXIT_OK, EXIT_MISTAKES, EXIT_USAGE, EXIT_BUG, EXIT_MISSING = range(5)
 
 
@@ -61,7 +66,10 @@ class MissingProgram(Exception):
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs ``epg`` with ``arguments``, or with those of the process.  Returns the exit status."""
     words = sys.argv[1:] if arguments is None else arguments
-    if _command(words) not in WITHOUT_PACKAGES:
+    command = _command(words)
+    if arguments is None and command in WITHOUT_COLLECTOR:
+        gc.disable()
+    if command not in WITHOUT_PACKAGES:
         try:
             bootstrap.ensure()
         except bootstrap.MissingPackages as problem:
