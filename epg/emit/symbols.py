@@ -69,6 +69,10 @@ def _words_of_templates(app: Application, env: Environment) -> set[str]:
     words: set[str] = set()
     for template in templates:
         source = env.loader.get_source(env, template)[0]
-        for prefix in (app.name, "middleware", "console"):  # the latter two are values of MiddlewareView.prefix
-            words.update(re.findall(r"\w+", re.sub(r"\{\{ *(m\.)?prefix *\}\}", prefix, source)))
-    return words
+        words.update(re.findall(r"\w+", re.sub(r"\{\{ *(m\.)?prefix *\}\}", _PREFIX, source)))
+    prefixes = (app.name, "middleware", "console")  # the latter two are values of MiddlewareView.prefix
+    return {word.replace(_PREFIX, prefix) for word in words for prefix in prefixes}
+
+
+_PREFIX = "0prefix0"
+"""Stands for a prefix in the text of a template.  No word of C begins with a digit."""

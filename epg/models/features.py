@@ -387,9 +387,10 @@ _SOLVER_ARRAYS = (
 def _check_solver_arrays(linked: Linked, diagnostics: Diagnostics) -> None:
     """Reports arrays that exist only if equations need a solver: ``xx_S``, ``xx_r``, ``xx_A``, ``xx_a``."""
     for letters, id, what, hint in _SOLVER_ARRAYS:
+        end = rf"_[{letters}](?=\s*\[\s*\d+\s*\]\s*=[^=])"  # fast to find, because it begins with one character
+        pattern = re.compile(rf"(?<![\w.])(?:\w+->)?(?:xx|m){end}")
         for code in linked.units:
-            pattern = re.compile(rf"(?<![\w.])(?:\w+->)?(?:xx_|m_)[{letters}](?=\s*\[\s*\d+\s*\]\s*=[^=])")
-            match = pattern.search(code.file.code)
+            match = pattern.search(code.file.code) if re.search(end, code.file.code) else None
             if match:
                 span = code.file.span(match.start(), match.end())
                 diagnostics.error(id, span, _solver(what), hint=hint)
