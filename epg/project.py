@@ -25,7 +25,6 @@ from epg.data import targets_roots
 from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.documents.cmake_call import caller_span, setting_span
-from epg.documents.ioc_file import read_ioc
 from epg.documents.tcf import TcfFile, load_tcf_chain, settings_node
 from epg.documents.text_file import Drafts
 from epg.models import load_model
@@ -144,6 +143,8 @@ def load_configuration(
     configuration = check_configuration(chain, settings, catalog, diagnostics, pins_required=pins_required)
     if request.ioc is None:
         return configuration
+    from epg.documents.ioc_file import read_ioc  # few targets have such a file
+
     ioc = read_ioc(request.ioc, diagnostics, request.caller, request.drafts)
     if configuration is None or ioc is None:
         return None

@@ -8,6 +8,7 @@ from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 from epg.catalog.catalog import Catalog, Kind, Target
 from epg.catalog.clocks import check_stated, with_frequencies
@@ -24,12 +25,14 @@ from epg.check.topics import Use, check_names, check_quality
 from epg.check.uses import Used, used_components
 from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics, Note, did_you_mean
-from epg.documents.ioc_file import Ioc
 from epg.documents.items import map_of
 from epg.documents.schema import extended_from, load_schema, validate
 from epg.documents.tcf import TcfFile
 from epg.documents.yaml_file import newer_version
 from epg.source import Span, YamlNode
+
+if TYPE_CHECKING:
+    from epg.documents.ioc_file import Ioc
 
 ENABLE_TOPIC, DIAGNOSTICS_TOPIC = "~/enable", "/diagnostics"
 """The topics that every target with a ROS 2 middleware has, in addition to those of its components."""

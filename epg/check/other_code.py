@@ -13,12 +13,15 @@ from collections.abc import Iterable, Mapping
 from dataclasses import field
 from fractions import Fraction
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 from epg.catalog.hardware import Soc, Target
 from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics, Note
-from epg.documents.ioc_file import Ioc, IocEntry
 from epg.source import Span
+
+if TYPE_CHECKING:
+    from epg.documents.ioc_file import Ioc, IocEntry
 
 _PIN = re.compile(r"(P[A-Z]\d{1,2})(?:[-_ ].*)?\.Signal")  # PA13 (JTMS/SWDIO), PC14-OSC32_IN (OSC32_IN), PC2_C
 _VIRTUAL = re.compile(r"VP_(\w+)\.Signal")
