@@ -138,7 +138,7 @@ def test_the_code_of_kinds(original: str, tmp_path: Path) -> None:
     kind = roots / "components" / "quadrature_encoder"
     shutil.copytree(data_folder("targets") / "components" / "quadrature_encoder", kind)
     assert hash_of(generate(folder, roots=(roots,))) == original
-    replaced("signal > 0.5", "signal > 0.6")(kind / "quadrature_encoder.h")
+    replaced("epg_less(0.5, signal)", "epg_less(0.6, signal)")(kind / "quadrature_encoder.h")
     assert hash_of(generate(folder, roots=(roots,))) != original
 
 
