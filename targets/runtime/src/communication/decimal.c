@@ -43,9 +43,8 @@ static size_t put(char *text, size_t length, const char *more)
 static size_t digits_of(char text[20], uint64_t value)
 {
     size_t begin = 20;
-    uint32_t digits = 0;
     do { /* nine digits at a time: a Cortex-M0+ takes ten times as long for a division of 64 bits as for one of 32 */
-        digits = (uint32_t)(value % POWER_9);
+        uint32_t digits = (uint32_t)(value % POWER_9);
         value /= POWER_9;
         for (int i = 0; i < NINE_DIGITS && (digits != 0 || value != 0); i++) {
             text[--begin] = (char)('0' + (int)(digits % 10U));
