@@ -14,6 +14,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from epg.dataclass import dataclass
+from epg.emit.model.render import parameter_constants
 from epg.emit.service import ParameterView, parameter_views
 from epg.emit.text import Code, double, identifier
 from epg.quantity import normal_unit
@@ -48,12 +49,12 @@ class SetpointAccess:
 
 @dataclass(frozen=True)
 class ParameterAccess:
-    """A parameter that can be read and set.  ``range`` is empty if it has no limits."""
+    """A parameter that can be read and set: ``constant`` of the model.  ``range`` is empty if it has no limits."""
 
     word: Code
     name: str
     unit: str
-    index: int
+    constant: Code
     range: str
 
 
@@ -77,11 +78,13 @@ def access_of(app: Application, shared: bool) -> Access:
     names += [(parameter.identifier, "parameter") for parameter in tunable]
     words = {name: identifier(word) for name, word in zip(names, unique_words(names), strict=True)}
     parameters = []
-    for number, parameter in enumerate(tunable):
+    # Tunable parameters come first in the model.  Therefore its constants are the indices in the table of parameters.
+    names_in_model = parameter_constants(f"{app.name}_model", model.parameters)
+    for constant, parameter in zip(names_in_model, tunable):
         setting = app.parameter_settings.get(parameter.name)
         limits = f"{setting.minimum:g} to {setting.maximum:g}" if setting and is_limited(setting) else ""
         word = words[parameter.identifier, "parameter"]
-        parameters.append(ParameterAccess(word, parameter.name, parameter.unit, number, limits))
+        parameters.append(ParameterAccess(word, parameter.name, parameter.unit, identifier(constant), limits))
     return Access(
         ports=tuple(
             PortAccess(

@@ -15,7 +15,7 @@ from epg.emit.text import Code, identifier
 from epg.resolve.application import Application
 
 CONSTANTS = ("COMPONENT", "SETPOINT", "PUBLISHED", "SIGNAL", "FAULT")
-"""The second words of the constants in ``<name>_app.c``: ``JIWY_COMPONENT_PWM_PAN``."""
+"""The second words of the constants in ``<name>.h`` and ``<name>_app.c``: ``JIWY_COMPONENT_PWM_PAN``."""
 
 TEMPLATES = Path(__file__).resolve().parent / "templates"
 

@@ -114,3 +114,14 @@ def test_a_program_beside_messages_and_cycles(middleware: str, sanitizer: list[s
         # This ThreadSanitizer does not support the address-space randomisation of newer kernels.
         done = run_program(["setarch", platform.machine(), "-R", program], environment=environment)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_indices_have_names(tmp_path: Path) -> None:
+    files = generate(tmp_path)
+    indices = re.findall(r"_target\.control, (\w+)", files["robot_access.c"])
+    names = ["SETPOINT_SET_X", "SETPOINT_SPEED", "SETPOINT_SET_X"]
+    names += ["MODEL_GAIN", "MODEL_GAIN", "MODEL_STEPS", "MODEL_STEPS"]
+    assert indices == [f"ROBOT_{name}" for name in names]
+    constants = re.findall(r"ROBOT_COMPONENT_(\w+),", files["robot.h"])
+    table = files["robot_app.c"].partition("components[] = {")[2].partition("}")[0]
+    assert [name.lower() for name in constants] == re.findall(r'"(\w+)"', table) != []

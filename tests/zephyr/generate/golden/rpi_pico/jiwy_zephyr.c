@@ -79,8 +79,8 @@ static const epg_safe_state_t safe_states_1[] = { /* components.pwm_tilt */
 };
 
 static const epg_output_group_t groups[] = {
-    {.component = 2, .first = 0, .count = 3, .state_count = 3, .states = safe_states_0},
-    {.component = 3, .first = 3, .count = 3, .state_count = 3, .states = safe_states_1},
+    {.component = JIWY_COMPONENT_PWM_PAN, .first = 0, .count = 3, .state_count = 3, .states = safe_states_0},
+    {.component = JIWY_COMPONENT_PWM_TILT, .first = 3, .count = 3, .state_count = 3, .states = safe_states_1},
 };
 
 const epg_zephyr_hardware_t epg_zephyr_hardware = {
