@@ -21,7 +21,7 @@ from epg.emit.topics import Macro
 from epg.resolve.application import Application, ResolvedComponent
 from epg.resolve.parameters import is_limited
 
-CAPTURE, CAPTURE_ON_COMPUTER = 256, 16384
+CAPTURE, CAPTURE_ON_COMPUTER = 224, 16384
 """The default of the option ``capture``: a chip's memory is small."""
 
 
