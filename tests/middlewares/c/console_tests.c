@@ -23,8 +23,9 @@ TEST(it_greets)
 {
     bench_start(true);
     CHECK(strcmp(bench.out, "ready node=bench_node epg=1.2.3 hash=0123456789abcdef\r\n") == 0);
-    check_answer("version\n",
-                 "ok version name=fake node=bench_node epg=1.2.3 hash=0123456789abcdef period=0.001 stored=nothing\r\n");
+    check_answer(
+        "version\n",
+        "ok version name=fake node=bench_node epg=1.2.3 hash=0123456789abcdef period=0.001 stored=nothing\r\n");
 }
 
 TEST(setpoints_of_one_line_act_in_one_cycle)
@@ -394,10 +395,12 @@ TEST(typing_is_shown_and_corrected)
                                    "ok version name=fake node=bench_node epg=1.2.3 hash=0123456789abcdef period=0.001 "
                                    "stored=nothing\r\n");
     check_answer("echo off\n", "echo off\r\nok echo\r\n");
-    check_answer("verxx\x7f\x7fsionx\b\n",
-                 "ok version name=fake node=bench_node epg=1.2.3 hash=0123456789abcdef period=0.001 stored=nothing\r\n");
-    check_answer("garbage\x03version\n",
-                 "ok version name=fake node=bench_node epg=1.2.3 hash=0123456789abcdef period=0.001 stored=nothing\r\n");
+    check_answer(
+        "verxx\x7f\x7fsionx\b\n",
+        "ok version name=fake node=bench_node epg=1.2.3 hash=0123456789abcdef period=0.001 stored=nothing\r\n");
+    check_answer(
+        "garbage\x03version\n",
+        "ok version name=fake node=bench_node epg=1.2.3 hash=0123456789abcdef period=0.001 stored=nothing\r\n");
     check_answer("echo\n", "error echo must be 'on' or 'off'\r\n");
 }
 
