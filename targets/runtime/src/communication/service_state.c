@@ -15,11 +15,15 @@
 #include "reply.h"
 
 #define TRIGGER_REQUEST                                                                                                \
-    {.type = "std_srvs::srv::dds_::Trigger_Request_",                                                                  \
-     .hash = EPG_TYPE_HASH("RIHS01_d010825374ce8918e72bfd826c82603e60f45419e932ea976f807b74a863a199")}
+    {                                                                                                                  \
+        .type = "std_srvs::srv::dds_::Trigger_Request_",                                                               \
+        .hash = EPG_TYPE_HASH("RIHS01_d010825374ce8918e72bfd826c82603e60f45419e932ea976f807b74a863a199")               \
+    }
 #define TRIGGER_REPLY                                                                                                  \
-    {.type = "std_srvs::srv::dds_::Trigger_Response_",                                                                 \
-     .hash = EPG_TYPE_HASH("RIHS01_2d946c21e2fc3f1e9ca6986a8191d85fcc70097a8bb7771a053564bc47009cdf")}
+    {                                                                                                                  \
+        .type = "std_srvs::srv::dds_::Trigger_Response_",                                                              \
+        .hash = EPG_TYPE_HASH("RIHS01_2d946c21e2fc3f1e9ca6986a8191d85fcc70097a8bb7771a053564bc47009cdf")               \
+    }
 
 /** Begins to count control cycles. */
 static void begin(epg_node_t *node)

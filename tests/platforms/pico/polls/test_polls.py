@@ -12,8 +12,8 @@ from tests.platforms.pico.images import PLATFORMS, skip_unless_emulated
 
 from .measure import Polls, measure_uart, measure_usb
 
-LONGEST = CYCLES_PER_MILLISECOND * 5 // 4
-"""A millisecond, and a quarter of it where all that is rare comes together: diagnostics while every line is full."""
+LONGEST = CYCLES_PER_MILLISECOND * 13 // 10
+"""A millisecond, and 0.3 ms where all that is rare comes together: diagnostics while every line is full."""
 MILLISECONDS = 150
 
 
