@@ -113,7 +113,7 @@ def runtime(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     if compiler is None:
         pytest.skip("a C compiler is missing: apt install gcc")
     library = tmp_path_factory.mktemp("runtime") / "messages.so"
-    sources = [str(RUNTIME / "src" / name) for name in ("message_table.c", "cdr.c")]
+    sources = [str(RUNTIME / "src" / "communication" / name) for name in ("message_table.c", "cdr.c")]
     flags = ["-std=c11", "-O1", "-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Werror", "-fPIC", "-shared"]
     flags += ["-fsanitize=undefined", "-fno-sanitize-recover", "-static-libubsan"]
     subprocess.run([compiler, *flags, f"-I{RUNTIME / 'include'}", *sources, "-lm", "-o", str(library)], check=True)
