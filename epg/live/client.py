@@ -57,6 +57,8 @@ class Parameter:
     value: float
     generated: float
     unit: str
+    low: float | None  # the smallest possible value; None: any
+    high: float | None
 
 
 @dataclass(frozen=True)
@@ -150,6 +152,14 @@ class Client:
         :raises Lost: there is no answer
         """
         self.command("enable leased")
+
+    def move(self, actuator: str, duty: float, milliseconds: int = 250) -> None:
+        """Moves an actuator of a disabled target for a short time.  The same call before its end prolongs the movement.
+
+        It returns at once.  The lines that the encoders have moved by answer the first call, and go to ``told``.
+        """
+        with contextlib.suppress(PortError):
+            self._send(b"C\0" + f"jog {actuator} {duty!r} {milliseconds}".encode("ascii"))
 
     def respond(self, number: int) -> None:
         """Sends a number back."""
@@ -297,7 +307,8 @@ def _words(line: str) -> list[tuple[str, str]]:
 
 
 def _parameter(line: str) -> Parameter:
-    """The parameter of a line "parameter Pan\\\\PID\\\\kp=2.2 generated=2.6 unit=s"."""
+    """The parameter of a line "parameter Pan\\\\PID\\\\kp=2.2 generated=2.6 unit=s min=0 max=5"."""
     (name, value), *others = _words(line)
     known = dict(others)
-    return Parameter(name, float(value), float(known.get("generated", value)), known.get("unit", ""))
+    low, high = (float(known[key]) if key in known else None for key in ("min", "max"))
+    return Parameter(name, float(value), float(known.get("generated", value)), known.get("unit", ""), low, high)

@@ -7,6 +7,7 @@
 
 #include <string.h>
 
+#include "epg/finite.h"
 #include "epg/names.h"
 #include "epg/store.h"
 #include "session.h"
@@ -46,6 +47,12 @@ static bool parameter_line(epg_console_session_t *session, size_t index)
     epg_console_unit(output, parameter->unit);
     if (memcmp(&value, &parameter->value, sizeof value) != 0) {
         epg_console_value(output, "generated", parameter->value);
+    }
+    if (parameters->limits != NULL && epg_is_finite(parameters->limits[number].minimum)) {
+        epg_console_value(output, "min", parameters->limits[number].minimum);
+    }
+    if (parameters->limits != NULL && epg_is_finite(parameters->limits[number].maximum)) {
+        epg_console_value(output, "max", parameters->limits[number].maximum);
     }
     return true;
 }

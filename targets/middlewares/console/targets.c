@@ -133,6 +133,8 @@ void epg_console_jog(epg_console_session_t *session, const epg_console_command_t
         epg_console_end_or_drop(&session->output);
     } else if (session->has_status && session->status.enabled) {
         epg_console_error(session, "jog", "the target is enabled: disable it", NULL);
+    } else if (session->jogging && session->output.framed && epg_jog_renew(jog, index, duty)) {
+        epg_console_done(session, "jog");
     } else if (session->jogging) {
         epg_console_error(session, "jog", "an actuator is moving", NULL);
     } else {

@@ -108,7 +108,7 @@ TEST(parameters_are_read_and_changed_by_name)
     CHECK_EQUAL(bench.model[1], 0.001);
     check_answer("get PID\\tauD\n", "parameter PID\\tauD=0.001 unit=s generated=0.05\r\nok get\r\n");
     const char *all = bench_say("get\n");
-    CHECK(has_line(all, "parameter pb=0\r\n"));
+    CHECK(has_line(all, "parameter pb=0 min=0 max=1\r\n"));
     CHECK(has_line(all, "ok get"));
 }
 

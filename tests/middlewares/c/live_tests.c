@@ -194,6 +194,40 @@ TEST(lines_of_text_work_between_frames)
     CHECK(strcmp(bench_say("set_b=5\n"), "ok setpoint\r\n") == 0);
 }
 
+TEST(a_movement_lasts_while_it_is_renewed)
+{
+    begin(false);
+    command(1, "jog motor 0.1 100");
+    for (unsigned char tag = 2; tag < 12; tag++) {
+        bench_run(80);
+        CHECK_EQUAL(fake.actuator, 0.1);
+        command(tag, "jog motor 0.1 100");
+        bench_run(2);
+        check_next(tag, "ok jog");
+    }
+    command(20, "jog motor 0.2 100");
+    bench_run(2);
+    check_next(20, "error jog an actuator is moving");
+    bench_run(90);
+    CHECK_EQUAL(fake.actuator, 0.1);
+    bench_run(20);
+    CHECK_EQUAL(fake.actuator, 0.0);
+    next('A'); /* moved encoder ... */
+    check_next(1, "ok jog");
+}
+
+TEST(a_movement_ends_with_the_program)
+{
+    begin(false);
+    command(1, "jog motor 0.1 250");
+    bench_run(200);
+    command(2, "jog motor 0.1 250");
+    bench_run(245);
+    CHECK_EQUAL(fake.actuator, 0.1);
+    bench_run(10);
+    CHECK_EQUAL(fake.actuator, 0.0);
+}
+
 /* Streams -------------------------------------------------------------------------------------------------------- */
 
 static void stream(unsigned char tag, uint32_t every, size_t count, const unsigned char *signals)
@@ -485,6 +519,7 @@ TEST(any_bytes_are_harmless)
 
 RUN(ENTRY(a_command_in_a_frame_has_its_answer_in_frames_with_its_tag), ENTRY(a_line_that_answers_no_command_has_tag_0),
     ENTRY(damaged_frames_do_nothing), ENTRY(lines_of_text_work_between_frames),
+    ENTRY(a_movement_lasts_while_it_is_renewed), ENTRY(a_movement_ends_with_the_program),
     ENTRY(a_stream_has_a_row_of_every_cycle), ENTRY(rows_without_room_are_dropped_whole_and_leave_a_gap),
     ENTRY(a_stream_that_is_impossible_is_refused), ENTRY(a_stream_and_a_recording_share_the_memory),
     ENTRY(a_stream_ends_with_the_connection_and_with_the_silence_of_the_program),

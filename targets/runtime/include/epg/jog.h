@@ -10,6 +10,7 @@
 #ifndef EPG_JOG_H
 #define EPG_JOG_H
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -57,10 +58,12 @@ typedef struct epg_jog {
     double duty;
     uint32_t cycles; /**< requested duration in control cycles; after the end, the real duration */
     epg_jog_end_t end;
+    atomic_uint renewals; /**< number of renewals of movements; written by the communication side */
 
-    bool stop;        /**< control side: no actuator may be driven in this cycle */
-    bool running;     /**< control side: a movement is in progress */
-    uint32_t elapsed; /**< control side: cycles driven so far */
+    bool stop;                  /**< control side: no actuator may be driven in this cycle */
+    bool running;               /**< control side: a movement is in progress */
+    uint32_t elapsed;           /**< control side: cycles driven so far, since the last renewal */
+    unsigned int renewals_seen; /**< control side */
 } epg_jog_t;
 
 /** Ends a movement that was left when the control loop stopped.  Must be called only while neither side is active. */
@@ -85,5 +88,12 @@ bool epg_jog_idle(epg_jog_t *jog);
  * such actuator, or while a movement is in progress.
  */
 bool epg_jog_start(epg_jog_t *jog, size_t index, double duty, uint32_t cycles);
+
+/**
+ * Lets the movement of actuator `index` with `duty` take its requested duration from now on.  Returns false if there is
+ * no such movement.  A program that renews short movements moves an actuator as long as a key is pressed, and the
+ * actuator stops soon after the program or its connection has failed.
+ */
+bool epg_jog_renew(epg_jog_t *jog, size_t index, double duty);
 
 #endif

@@ -37,6 +37,11 @@ bool epg_jog_cycle(epg_jog_t *jog, bool enabled)
     if (!epg_handover_there(&jog->handover)) {
         return false;
     }
+    const unsigned int renewals = atomic_load(&jog->renewals);
+    if (renewals != jog->renewals_seen) {
+        jog->renewals_seen = renewals;
+        jog->elapsed = 0;
+    }
     if (!jog->running) {
         take_readings(jog, jog->first);
         jog->elapsed = 0;
@@ -70,5 +75,14 @@ bool epg_jog_start(epg_jog_t *jog, size_t index, double duty, uint32_t cycles)
     jog->duty = duty;
     jog->cycles = cycles;
     epg_handover_give(&jog->handover);
+    return true;
+}
+
+bool epg_jog_renew(epg_jog_t *jog, size_t index, double duty)
+{
+    if (epg_handover_here(&jog->handover) || index != jog->actuator || duty < jog->duty || duty > jog->duty) {
+        return false;
+    }
+    atomic_store(&jog->renewals, atomic_load(&jog->renewals) + 1U);
     return true;
 }
