@@ -9,11 +9,16 @@ from __future__ import annotations
 
 import itertools
 import random
+import struct
+from array import array
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from epg.live.client import Rows
+from epg.live.frames import Decoder, encode
+from epg.live.rows import Stream
 from tests.emulator.build import build
 from tests.emulator.emulator import CYCLES_PER_MILLISECOND, Emulator
 from tests.platforms.pico.closed_loop.robot import connect
@@ -30,6 +35,9 @@ NODE_BAUD, CONSOLE_BAUD = 460800, 921600
 BYTES_PER_SECOND = 800_000
 """More than USB carries to one port."""
 UART = 0
+JIWY_SIGNALS = 10
+CHANGE_MS = 5
+"""Time between two changes of a parameter while a program streams signals."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +52,18 @@ class Polls:
     deviations: frozenset[int]
     """Of the ticks of core 1 from t0 + k T."""
     faults: int
+
+
+@dataclass(frozen=True)
+class Streamed:
+    """What a program on the console has received: rows of a stream, and answers."""
+
+    rows: int
+    dropped: int
+    damaged: int
+    answers: int
+    values: list[float]
+    """Of the first signal."""
 
 
 class _Recorder(UsbLink):
@@ -89,6 +109,49 @@ def measure_usb(platform: str, milliseconds: int, seed: int = 3) -> Iterator[Pol
         pico.call("usb_flood", seed=seed + 1, port=AGENT)
         pico.run(milliseconds=milliseconds)
         yield _polls(pico, "USB: garbage on both ports")
+
+
+def measure_live(platform: str, milliseconds: int, seed: int = 3) -> Iterator[tuple[Polls, Streamed]]:
+    """A program on the console streams 20 signals in every cycle and changes a parameter every 5 ms."""
+    elf = images("pico", platform, "user_jiwy", middleware="xrce_console") / "user_jiwy.elf"
+    with _started(elf, seed) as pico:
+        pico.call("usb_open", port=CONSOLE)
+        pico.run(milliseconds=5)
+        pico.receive_bytes(port=CONSOLE)
+        _polls(pico, "start")
+        streamed = _stream(pico, milliseconds)
+        yield _polls(pico, "USB: a program streams 20 signals and changes parameters"), streamed
+        pico.call("usb_flood", seed=seed, port=AGENT)
+        streamed = _stream(pico, milliseconds)
+        yield _polls(pico, "USB: the same, with garbage at the agent's port"), streamed
+
+
+def _stream(pico: Emulator, milliseconds: int, signals: int = 20) -> Streamed:
+    decoder, stream = Decoder(), Stream(["signal"] * signals)
+    answers = 0
+    values: list[float] = []
+
+    def take() -> None:
+        nonlocal answers
+        for part in decoder.feed(pico.receive_bytes(port=CONSOLE)):
+            assert isinstance(part, bytes)
+            if part.startswith(b"A\2ok set"):
+                answers += 1
+            elif part.startswith(b"D"):
+                number, tick = struct.unpack_from("<IQ", part, 1)
+                rows = Rows(number, tick / 1e9, array("f", part[13:]))
+                values.extend(row.values[0] for row in stream.take(rows))
+
+    numbers = [index % JIWY_SIGNALS for index in range(signals)]
+    pico.send(encode(b"S\1" + struct.pack(f"<I{signals}H", 1, *numbers)), port=CONSOLE)
+    for step in range(milliseconds // CHANGE_MS):
+        pico.send(encode(b"C\2set Pan\\PID\\kp=%f" % (2.0 + step / 100)), port=CONSOLE)
+        pico.run(milliseconds=CHANGE_MS)
+        take()
+    pico.send(encode(b"S\3"), port=CONSOLE)
+    pico.run(milliseconds=CHANGE_MS)
+    take()
+    return Streamed(stream.rows, stream.dropped, decoder.damaged, answers, values)
 
 
 def measure_uart(platform: str, milliseconds: int, seed: int = 3) -> Iterator[Polls]:

@@ -10,7 +10,7 @@ import pytest
 from tests.emulator.emulator import CYCLES_PER_MILLISECOND
 from tests.platforms.pico.images import PLATFORMS, skip_unless_emulated
 
-from .measure import Polls, measure_uart, measure_usb
+from .measure import CHANGE_MS, Polls, measure_live, measure_uart, measure_usb
 
 LONGEST = CYCLES_PER_MILLISECOND * 13 // 10
 """A millisecond, and 0.3 ms where all that is rare comes together: diagnostics while every line is full."""
@@ -26,3 +26,16 @@ def test_within_a_millisecond(platform: str, measure: Callable[[str, int], Itera
         assert polls.longest <= LONGEST, polls
         assert polls.ticks >= MILLISECONDS - 1
         assert polls.deviations == {0}, polls
+
+
+@pytest.mark.parametrize("platform", PLATFORMS)
+def test_a_program_gets_every_row_of_20_signals_in_every_cycle(platform: str) -> None:
+    skip_unless_emulated(platform)
+    for polls, streamed in measure_live(platform, MILLISECONDS):
+        assert polls.faults == 0
+        assert polls.longest <= LONGEST, polls
+        assert polls.deviations == {0}, polls
+        assert streamed.rows >= MILLISECONDS
+        assert (streamed.dropped, streamed.damaged) == (0, 0)
+        assert streamed.answers == MILLISECONDS // CHANGE_MS
+        assert len(set(streamed.values)) > 1, "the robot moves"
