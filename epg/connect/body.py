@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 from epg.edit.bindings import End
@@ -32,6 +33,14 @@ def text(body: Body, key: str, default: str | None = None) -> str:
         raise Refused(f"'{key}' must be a text on one line")
     if not value and default is None:
         raise Refused(f"'{key}' is empty")
+    return value
+
+
+def number(body: Body, key: str, default: float | None = None) -> float:
+    """The finite number at ``key``.  Raises Refused."""
+    value = body.get(key, default)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise Refused(f"'{key}' must be a number")
     return value
 
 

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import itertools
 import json
 import sys
 import threading
@@ -26,7 +27,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, unquote, urlsplit
 
-from epg.connect.body import text
+from epg.connect.body import number, text
 from epg.connect.keys import Keys
 from epg.connect.peer import is_another_user
 from epg.connect.session import Refused, Session
@@ -126,6 +127,7 @@ class Server:
                     break
         finally:
             self.session.ended.set()
+            self.session.live.disconnect()
             self.session.runs.close()
             time.sleep(0.2)  # the page that has ended the session must get its answer
             self._http.shutdown()
@@ -243,6 +245,8 @@ class _Handler(BaseHTTPRequestHandler):
             self._send(200, "application/octet-stream", owner.session.runs.download(query.get("path", "")))
         elif path == "api/move":
             self._json(owner.session.move(query.get("configuration", "")))
+        elif path == "api/live/events":
+            self._events()
         elif path == "api/source":
             self._json(owner.session.source(query.get("file", ""), _integer(query, "line", 1)))
         elif path == "api/pins":
@@ -265,8 +269,46 @@ class _Handler(BaseHTTPRequestHandler):
         body = self._body()
         if path == "exchange":
             self._json({"secret": self.server.owner.exchange(text(body, "token"))})
+        elif path.startswith("api/live/"):
+            self._json(self._live(path.removeprefix("api/live/"), body))
         else:
             self._json(self.server.owner.session.act(path.removeprefix("api/"), body))
+
+    def _live(self, action: str, body: Mapping[str, object]) -> dict[str, Any]:
+        """Actions on a running target.  They wait neither for the session's actions nor for each other."""
+        session = self.server.owner.session
+        live = session.live
+        if action == "respond":
+            live.respond(text(body, "page"), int(number(body, "number")))
+        elif action == "stop":
+            live.stop()
+        elif action == "move":
+            live.move(text(body, "actuator"), number(body, "duty"))
+        elif action == "enable":
+            live.enable(text(body, "page"))
+        elif action == "command":
+            return {"answer": live.command(text(body, "line"))}
+        elif action == "connect":
+            session.go_live(body)
+        elif action == "disconnect":
+            live.disconnect()
+        else:
+            raise Refused(f"there is no action '{action}'", status=404)
+        return {}
+
+    def _events(self) -> None:
+        """Sends the events of a running target, one JSON object per line, until the connection with it ends."""
+        events = self.server.owner.session.live.events()
+        first = next(events)
+        self.close_connection = True
+        self.send_response(200)
+        for name, value in HEADERS.items():
+            self.send_header(name, value)
+        self.send_header("Content-Type", "application/x-ndjson")
+        self.send_header("Connection", "close")
+        self.end_headers()
+        for event in itertools.chain((first,), events):
+            self.wfile.write(json.dumps(event, allow_nan=False).encode() + b"\n")
 
     def _body(self) -> dict[str, object]:
         """The JSON object of a request.  Forms of other pages cannot send JSON, so they are refused here."""

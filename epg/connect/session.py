@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import epg
-from epg.connect.body import Body, Refused, bodies, boolean, ends, keys, names, text
+from epg.connect.body import Body, Refused, bodies, boolean, ends, keys, names, number, text
 from epg.connect.build.plan import make_plan
 from epg.connect.component_edits import add, copy, fill, remove, rename, take_back
 from epg.connect.configurations import Configurations
@@ -33,6 +33,7 @@ from epg.connect.pictures import draw
 from epg.connect.pinout import chosen_pin, draw_pinout, first_pins, options_view
 from epg.connect.projects import Job, find_jobs, system_jobs
 from epg.connect.run.find_simulation import simulations_of
+from epg.connect.run.live import Live, built_hash
 from epg.connect.runs import Runs, find_simulation
 from epg.connect.start import Start
 from epg.connect.targets import Targets
@@ -82,6 +83,7 @@ class Session:
         self._editor = Editor(jobs[0]) if jobs else None
         self._simulations: tuple[Job, State | None] | None = None
         self.runs = Runs(self._bump)
+        self.live = Live(self._bump)
         self._actions: dict[str, Callable[[Body], None]] = {
             "connect": self._connect,
             "rewire": self._rewire,
@@ -129,7 +131,7 @@ class Session:
         with self._changed:
             places = self._editor.loaded.places if self._editor is not None else None
             shown = {"version": self._version, "epg": epg.__version__, **self._shown}
-            return shown | self.runs.state(places)
+            return shown | self.runs.state(places) | {"live": self.live.state()}
 
     def wait(self, after: int, timeout: float) -> State:
         """The state, once its version differs from ``after``, the session ends, or ``timeout`` seconds have passed."""
@@ -216,6 +218,12 @@ class Session:
         """
         with self._changed:
             return self._ask("", anyway=anyway)
+
+    def go_live(self, body: Body) -> None:
+        """Connects with the target behind the port "path".  The hash of the last build tells whether it is this one."""
+        editor = self._editor
+        expected = built_hash(editor.job) if editor is not None else ""
+        self.live.connect(Path(text(body, "path")), expected, int(number(body, "baud", 115200)))
 
     @property
     def has_changes(self) -> bool:

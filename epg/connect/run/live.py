@@ -1,0 +1,324 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The connection of the page to a running target.
+
+The page gets events: points of the plots, numbers of a lease, and lines that the target tells.  This module never
+answers a number itself: only the page that has enabled the target does, so a page that is closed, hidden or hangs ends
+the lease.
+
+>>> # live = Live(changed=wake_the_page)
+>>> # live.connect(Path("/dev/ttyACM0"), expected="a30d631d6d9f2052"); live.command("set Pan\\\\PID\\\\kp=2.2")
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from epg.connect.body import Refused
+from epg.connect.projects import Job
+from epg.live import client as protocol
+from epg.live.buckets import Bucket, Buckets
+from epg.live.client import Client, Lost
+from epg.live.found import ports
+from epg.live.port import Port, PortError
+from epg.live.rows import Recording, Stream
+
+PERIOD = 0.05
+"""Seconds between two events with points."""
+WIDTH = 0.01
+"""Seconds of a point."""
+MOST = 32
+"""The largest number of signals in a stream."""
+KEPT = 1000
+"""Points that wait for a page that reads slowly; older ones are left out."""
+READING = ("get", "stats", "ports", "version", "help", "disable")
+"""Commands that a target with another firmware also gets."""
+
+
+def built_hash(job: Job) -> str:
+    """The hash of the firmware that was built last for a target; empty if there is none."""
+    if job.build_dir is None:
+        return ""
+    name = job.request.name
+    try:
+        description = json.loads((job.build_dir / "epg" / name / f"{name}.json").read_text(encoding="utf-8"))
+        return str(description["hash"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return ""
+
+
+class Live:
+    """One connection to a target.  ``changed`` is called, by any thread, when :meth:`state` has changed."""
+
+    def __init__(self, changed: Callable[[], None]) -> None:
+        self._changed = changed
+        self._lock = threading.Lock()
+        self._connected: _Connection | None = None
+        self._problem: dict[str, str] | None = None
+
+    @property
+    def is_connected(self) -> bool:
+        return self._connected is not None
+
+    def connect(self, path: Path, expected: str, baud: int = 115200) -> None:
+        """Connects with the target behind ``path``.  ``expected`` is the hash of the firmware that was built; "": none.
+
+        Raises Refused.
+        """
+        with self._lock:
+            if self._connected is not None:
+                raise Refused("a target is connected", "disconnect it first", 409)
+            self._problem = None
+            try:
+                self._connected = _Connection(path, expected, baud, self._state_changed)
+            except PortError as problem:
+                raise Refused(str(problem), problem.hint, 409) from None
+            except (Lost, protocol.Refused) as problem:
+                hint = "the firmware needs the console on this port; reset the board, look at the cable"
+                raise Refused(str(problem), hint, 409) from None
+        self._changed()
+
+    def disconnect(self) -> None:
+        """Ends the connection.  A target that the page has enabled becomes disabled."""
+        with self._lock:
+            connected, self._connected = self._connected, None
+        if connected is not None:
+            connected.close()
+            self._changed()
+
+    def command(self, line: str) -> list[str]:
+        """Sends a command to the target and returns its answer.  Raises Refused."""
+        return self._now().command(line)
+
+    def enable(self, page: str) -> None:
+        """Enables the target as long as ``page`` answers.  Raises Refused."""
+        self._now().enable(page)
+
+    def respond(self, page: str, number: int) -> None:
+        """Passes on the answer of a page to a number.  Only the page that has enabled the target is heard."""
+        connected = self._connected
+        if connected is not None:
+            connected.respond(page, number)
+
+    def move(self, actuator: str, duty: float) -> None:
+        """Moves an actuator for at most 250 ms, or prolongs its movement.  Raises Refused."""
+        self._now().move(actuator, duty)
+
+    def stop(self) -> None:
+        """Disables the target, whoever has enabled it.  Raises Refused."""
+        self._now().stop()
+
+    def events(self) -> Iterator[dict[str, Any]]:
+        """The events of the connection, until it ends.  Raises Refused if there is none."""
+        return self._now().events()
+
+    def state(self) -> dict[str, Any]:
+        """The connection for the page's state."""
+        connected = self._connected
+        return {
+            "ports": [{"path": str(path), "device": device} for path, device in ports().items()],
+            "target": connected.state() if connected is not None else None,
+            "problem": self._problem,
+        }
+
+    def _now(self) -> _Connection:
+        connected = self._connected
+        if connected is None:
+            raise Refused("no target is connected", "choose a port first", 409)
+        return connected
+
+    def _state_changed(self, lost: str) -> None:
+        if lost:
+            self._problem = {"message": lost, "hint": "look at the cable and at the program, and connect again"}
+            threading.Thread(target=self.disconnect, daemon=True).start()
+        self._changed()
+
+
+class _Connection:
+    """An open port with its client, and the pages that listen."""
+
+    def __init__(self, path: Path, expected: str, baud: int, changed: Callable[[str], None]) -> None:
+        self._changed = changed
+        self._path, self._expected = path, expected
+        self._owner = ""  # the page that has enabled the target
+        self._state = "enabled=0"
+        self._listeners: list[_Listener] = []
+        self._over = threading.Event()
+        self._port = Port(path, baud)
+        try:
+            self._client = Client(self._port, self._told, self._numbered)
+        except BaseException:
+            self._port.close()
+            raise
+        try:
+            self._state = self._client.command("stats")[0].removeprefix("stat ")
+            self._names = [signal.name for signal in self._client.description.signals][:MOST]
+            self._buckets = Buckets(len(self._names), WIDTH)
+            self._recording = Recording(Stream(self._names), [self._buckets])
+            self._every = 0
+            if self._names:
+                with contextlib.suppress(protocol.Refused):  # a target without memory for streams
+                    self._every = self._recording.start(self._client, range(len(self._names)), 1)
+        except BaseException:
+            self.close()
+            raise
+        self._thread = threading.Thread(target=self._collect, name="live", daemon=True)
+        self._thread.start()
+
+    @property
+    def _matches(self) -> bool:
+        return self._expected in ("", self._client.description.hash)
+
+    def state(self) -> dict[str, Any]:
+        found = self._client.description
+        return {
+            "path": str(self._path),
+            "name": found.name,
+            "version": found.version,
+            "hash": found.hash,
+            "matches": self._matches,
+            "period": found.period,
+            "every": self._every,
+            "state": dict(word.partition("=")[::2] for word in self._state.split(" ")),
+            "signals": [{"name": signal.name, "unit": signal.unit} for signal in found.signals[: len(self._names)]],
+            "setpoints": list(found.setpoints),
+            "actuators": list(found.actuators),
+            "parameters": [
+                {
+                    "name": each.name,
+                    "value": each.value,
+                    "generated": each.generated,
+                    "unit": each.unit,
+                    "low": each.low,
+                    "high": each.high,
+                }
+                for each in found.parameters
+            ],
+        }
+
+    def command(self, line: str) -> list[str]:
+        self._check(line.split(" ")[0])
+        try:
+            return self._client.command(line)
+        except protocol.Refused as refusal:
+            raise Refused(str(refusal), "'help' lists the commands", 409) from None
+        except UnicodeEncodeError:
+            raise Refused("a command has ASCII characters only") from None
+        except Lost as problem:
+            raise Refused(str(problem), "look at the cable", 409) from None
+
+    def enable(self, page: str) -> None:
+        self._check("enable")
+        self._owner = page
+        self.command("enable leased")
+
+    def respond(self, page: str, number: int) -> None:
+        if page == self._owner and 0 <= number < 1 << 32:
+            self._client.respond(number)
+
+    def move(self, actuator: str, duty: float) -> None:
+        self._check("jog")
+        if actuator not in self._client.description.actuators:
+            raise Refused(f"there is no actuator '{actuator}'", status=404)
+        self._client.move(actuator, duty)
+
+    def stop(self) -> None:
+        try:
+            self._client.disable()
+        except (Lost, protocol.Refused) as problem:
+            raise Refused(str(problem), "switch the actuators' supply off", 409) from None
+
+    def events(self) -> Iterator[dict[str, Any]]:
+        listener = _Listener()
+        self._listeners.append(listener)
+        try:
+            while not self._over.is_set():
+                yield listener.next()
+        finally:
+            self._listeners.remove(listener)
+
+    def close(self) -> None:
+        self._over.set()
+        self._client.stop()
+        self._port.close()
+
+    def _check(self, command: str) -> None:
+        if not self._matches and command not in READING:
+            message = (
+                f"the target has the firmware {self._client.description.hash}, not {self._expected} of the last build"
+            )
+            raise Refused(message, "flash it, or generate again", 409)
+
+    def _collect(self) -> None:
+        while not self._over.wait(PERIOD):
+            self._recording.drain()
+            found = self._buckets.take()
+            stream = self._recording.stream
+            for listener in list(self._listeners):
+                listener.add_points(found, stream.dropped)
+
+    def _told(self, line: str) -> None:
+        if line.startswith("state "):
+            self._state = line.removeprefix("state ")
+        lost = line.removeprefix("lost ") if line.startswith("lost ") else ""
+        for listener in list(self._listeners):
+            listener.add_line(line)
+        if line.startswith(("state ", "lost ")):
+            if lost:
+                self._over.set()
+            self._changed(lost)
+
+    def _numbered(self, number: int) -> None:
+        for listener in list(self._listeners):
+            listener.add_number(number)
+
+
+class _Listener:
+    """The events that a page has not read yet."""
+
+    def __init__(self) -> None:
+        self._new = threading.Condition()
+        self._points: deque[Bucket] = deque(maxlen=KEPT)
+        self._lines: deque[str] = deque(maxlen=KEPT)
+        self._number: int | None = None
+        self._dropped = 0
+
+    def add_points(self, points: list[Bucket], dropped: int) -> None:
+        with self._new:
+            self._points.extend(points)
+            self._dropped = dropped
+            self._new.notify()
+
+    def add_line(self, line: str) -> None:
+        with self._new:
+            self._lines.append(line)
+            self._new.notify()
+
+    def add_number(self, number: int) -> None:
+        """Only the newest number counts."""
+        with self._new:
+            self._number = number
+            self._new.notify()
+
+    def next(self) -> dict[str, Any]:
+        """The events since the last call, after at most :data:`PERIOD` seconds."""
+        end = time.monotonic() + PERIOD
+        with self._new:
+            while self._number is None and not self._lines and (left := end - time.monotonic()) > 0:
+                self._new.wait(left)
+            points, lines, number = list(self._points), list(self._lines), self._number
+            self._points.clear()
+            self._lines.clear()
+            self._number = None
+            return {
+                "points": [[point.time, point.lows, point.highs] for point in points],
+                "lines": lines,
+                "number": number,
+                "dropped": self._dropped,
+            }

@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A running target in the page: events, commands, and enabling that ends with the page."""
+
+from __future__ import annotations
+
+import contextlib
+import http.client
+import json
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+import pytest
+
+from epg.connect.server import SECRET
+from tests.connect.page import Denied, Page, serving, session_of
+from tests.live.test_live import LATE, LEASE, Target
+from tests.middlewares.conftest import build_jiwy
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="session")
+def jiwy_host(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return build_jiwy(tmp_path_factory.mktemp("jiwy"), "address,undefined")
+
+
+@pytest.fixture
+def target(jiwy_host: Path, tmp_path: Path) -> Iterator[Target]:
+    found = Target(jiwy_host, tmp_path)
+    yield found
+    found.process.kill()
+    found.process.communicate()
+
+
+@pytest.fixture
+def page() -> Iterator[Page]:
+    with serving(session_of(ROOT / "examples/jiwy")) as found:
+        yield found
+
+
+class Events:
+    """Reads the events of a page in a thread, and calls ``got`` with each."""
+
+    def __init__(self, page: Page, got: Callable[[dict[str, Any]], None] = lambda event: None) -> None:
+        self.all: list[dict[str, Any]] = []
+        self._connection = http.client.HTTPConnection(urlsplit(page.site).netloc, timeout=20)
+        self._connection.request("GET", "/api/live/events", headers={SECRET: page.secret})
+        self._socket = self._connection.sock
+        self._got = got
+        self._thread = threading.Thread(target=self._read, daemon=True)
+        self._thread.start()
+
+    def _read(self) -> None:
+        with contextlib.suppress(OSError, ValueError, http.client.HTTPException):  # closed meanwhile
+            for line in self._connection.getresponse():
+                event = json.loads(line)
+                self.all.append(event)
+                self._got(event)
+
+    def close(self) -> None:
+        self._socket.shutdown(socket.SHUT_RDWR)
+
+
+def connect(page: Page, target: Target) -> dict[str, Any]:
+    page.post("live/connect", path=str(target.port))
+    found: dict[str, Any] = page.state()["live"]["target"]
+    return found
+
+
+def test_the_state_shows_the_target(page: Page, target: Target) -> None:
+    found = connect(page, target)
+    assert (found["name"], found["matches"], found["every"]) == ("jiwy", True, 1)
+    assert {"name": "inputs.position_pan", "unit": "rad"} in found["signals"]
+    assert found["state"]["enabled"] == "1"
+    page.post("live/disconnect")
+    assert page.state()["live"]["target"] is None
+    assert target.is_enabled(), "the page has not enabled it"
+
+
+def test_points_have_the_least_and_the_greatest_value(page: Page, target: Target) -> None:
+    found = connect(page, target)
+    events = Events(page)
+    page.post("live/command", line="pan_subscriber=0.5")
+    time.sleep(1.5)
+    points = [point for event in events.all for point in event["points"]]
+    assert len(points) >= 100
+    times = [point[0] for point in points]
+    assert times == sorted(times)
+    position = [signal["name"] for signal in found["signals"]].index("inputs.position_pan")
+    assert max(point[2][position] for point in points) == pytest.approx(0.5, abs=0.2)
+    assert all(low <= high for point in points for low, high in zip(point[1], point[2], strict=True))
+    assert events.all[-1]["dropped"] == 0
+
+
+def test_commands_are_answered_and_mistakes_refused(page: Page, target: Target) -> None:
+    with pytest.raises(Denied, match="no target is connected"):
+        page.post("live/command", line="get")
+    connect(page, target)
+    assert page.post("live/command", line="set Pan\\PID\\kp=2.2")["answer"] == ["ok set"]
+    with pytest.raises(Denied, match="there is no command 'nonsense'"):
+        page.post("live/command", line="nonsense")
+    with pytest.raises(Denied, match="a target is connected"):
+        page.post("live/connect", path=str(target.port))
+    for body in ({}, {"line": 5}, {"line": "ä"}):
+        with pytest.raises(Denied):
+            page.post("live/command", **body)
+    with pytest.raises(Denied, match="there is no action"):
+        page.post("live/explode")
+    with pytest.raises(Denied, match="there is no actuator"):
+        page.post("live/move", actuator="engine", duty=0.1)
+
+
+def test_another_firmware_is_shown_and_not_written_to(target: Target) -> None:
+    session = session_of(ROOT / "examples/jiwy")
+    with serving(session) as page:
+        session.live.connect(target.port, expected="0123456789abcdef")
+        assert page.state()["live"]["target"]["matches"] is False
+        for line in ("set Pan\\PID\\kp=2.2", "enable", "pan_subscriber=1", "jog pwm_pan 0.1 10", "save"):
+            with pytest.raises(Denied, match="not 0123456789abcdef of the last build"):
+                page.post("live/command", line=line)
+        with pytest.raises(Denied):
+            page.post("live/enable", page="one")
+        page.post("live/command", line="get")
+        page.post("live/stop")
+
+
+# Enabling
+
+
+def enabled(page: Page, target: Target) -> Events:
+    """Events of a page that has enabled the target, and answers its numbers while ``answering`` is set."""
+    connect(page, target)
+    page.post("live/stop")
+
+    def answer(event: dict[str, Any]) -> None:
+        if event["number"] is not None and answering.is_set():
+            page.post("live/respond", page="one", number=event["number"])
+
+    answering.set()
+    events = Events(page, answer)
+    page.post("live/enable", page="one")
+    time.sleep(1)
+    assert page.state()["live"]["target"]["state"]["enabled"] == "1"
+    return events
+
+
+answering = threading.Event()
+
+
+def wait_until_disabled(page: Page, seconds: float = LEASE + LATE) -> None:
+    end = time.monotonic() + seconds
+    while page.state()["live"]["target"]["state"]["enabled"] == "1":
+        assert time.monotonic() < end, "the target is still enabled"
+        time.sleep(0.01)
+
+
+def test_a_page_that_does_not_answer_ends_the_lease(page: Page, target: Target) -> None:
+    enabled(page, target)
+    answering.clear()
+    wait_until_disabled(page)
+    assert page.state()["live"]["target"]["state"]["fault"] == "operator"
+
+
+def test_another_page_cannot_keep_the_lease(page: Page, target: Target) -> None:
+    enabled(page, target)
+    answering.clear()
+    stop = threading.Event()
+
+    def others() -> None:
+        while not stop.is_set():
+            for number in range(200):
+                page.post("live/respond", page="two", number=number)
+
+    thread = threading.Thread(target=others, daemon=True)
+    thread.start()
+    wait_until_disabled(page)
+    stop.set()
+    thread.join()
+
+
+def test_a_page_that_is_closed_ends_the_lease(page: Page, target: Target) -> None:
+    events = enabled(page, target)
+    events.close()
+    wait_until_disabled(page)
+
+
+def test_stop_is_heard_while_events_are_not_read(page: Page, target: Target) -> None:
+    enabled(page, target)
+    begin = time.monotonic()
+    page.post("live/stop")
+    assert time.monotonic() - begin < 0.5
+    wait_until_disabled(page, 0.5)
+    assert page.state()["live"]["target"]["state"]["fault"] == "none"
+
+
+def test_an_end_of_the_target_is_told(page: Page, target: Target) -> None:
+    connect(page, target)
+    target.process.kill()
+    state = page.until(lambda state: state["live"]["target"] is None, 5)
+    assert "is gone" in state["live"]["problem"]["message"]
