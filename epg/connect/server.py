@@ -93,7 +93,8 @@ class Server:
         self._last_seen: float | None = None
         self._started = time.monotonic()
         self._lock = threading.Lock()
-        self.assets = {path.name: path for path in PAGE.iterdir() if path.suffix in TYPES}
+        found = (path for path in PAGE.rglob("*") if path.suffix in TYPES)
+        self.assets = {path.relative_to(PAGE).as_posix(): path for path in found}
         self._announce = announce
         self._announced = ""
         if announce is not None:

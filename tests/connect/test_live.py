@@ -92,7 +92,8 @@ def test_points_have_the_least_and_the_greatest_value(page: Page, target: Target
     times = [point[0] for point in points]
     assert times == sorted(times)
     position = [signal["name"] for signal in found["signals"]].index("inputs.position_pan")
-    assert max(point[2][position] for point in points) == pytest.approx(0.5, abs=0.2)
+    values = [point[2][position] for point in points]
+    assert max(values) > min(values) + 0.1, "the robot moves"
     assert all(low <= high for point in points for low, high in zip(point[1], point[2], strict=True))
     assert events.all[-1]["dropped"] == 0
 

@@ -8,6 +8,7 @@ import { h } from "./dom.js";
 import { hardware } from "./hardware.js";
 import { icon } from "./icons.js";
 import { picture } from "./pictures.js";
+import { livePanel, liveTitle } from "./live.js";
 import { pinout } from "./pinout.js";
 import { problemList } from "./problems.js";
 import { simulationPanel, simulationTitle } from "./simulation.js";
@@ -31,6 +32,7 @@ function tabs(state) {
     problems,
     { name: "build", title: buildTitle(state), content: buildPanel },
     { name: "simulation", title: simulationTitle(state), content: simulationPanel },
+    { name: "live", title: liveTitle(state), content: livePanel },
     { name: "component", title: "Component", content: componentPanel },
     { name: "settings", title: "Settings", content: settingsPanel },
     { name: "hardware", title: "Pins and peripherals", content: hardware },

@@ -100,6 +100,35 @@ async function send(action, body) {
   return null;
 }
 
+// Does an action on a running target at once: it does not wait for other actions. Returns the answer, or the error if it
+// was refused: {error: {message, hint}}.
+export async function ask(action, body = {}) {
+  try {
+    const answer = await request(`api/live/${action}`, {
+      method: "POST",
+      headers: { "Content-Type": "application/json" },
+      body: JSON.stringify(body),
+    });
+    return await answer.json();
+  } catch {
+    return { error: { message: "EPG does not answer", hint: "look at the robot" } };
+  }
+}
+
+// The objects of an answer that arrive one by one, as lines of JSON.
+export async function* jsonLines(address) {
+  const answer = await get(address);
+  const reader = answer.body.pipeThrough(new TextDecoderStream()).getReader();
+  let rest = "";
+  for (;;) {
+    const { value, done } = await reader.read();
+    if (done) return;
+    const lines = (rest + value).split("\n");
+    rest = lines.pop();
+    for (const line of lines) if (line) yield JSON.parse(line);
+  }
+}
+
 export async function getJson(address) {
   return (await get(address)).json();
 }

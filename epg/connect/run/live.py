@@ -158,6 +158,7 @@ class _Connection:
             raise
         try:
             self._state = self._client.command("stats")[0].removeprefix("stat ")
+            self._parameters = self._client.description.parameters
             self._names = [signal.name for signal in self._client.description.signals][:MOST]
             self._buckets = Buckets(len(self._names), WIDTH)
             self._recording = Recording(Stream(self._names), [self._buckets])
@@ -198,14 +199,18 @@ class _Connection:
                     "low": each.low,
                     "high": each.high,
                 }
-                for each in found.parameters
+                for each in self._parameters
             ],
         }
 
     def command(self, line: str) -> list[str]:
         self._check(line.split(" ")[0])
         try:
-            return self._client.command(line)
+            answer = self._client.command(line)
+            if line.startswith("set "):
+                self._parameters = self._client.parameters()
+                self._changed("")
+            return answer
         except protocol.Refused as refusal:
             raise Refused(str(refusal), "'help' lists the commands", 409) from None
         except UnicodeEncodeError:

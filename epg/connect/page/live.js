@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: Apache-2.0
+// "Live": a running target. Plots of its signals, its parameters, and the buttons that enable, move and stop it.
+
+import { h, id } from "./dom.js";
+import { icon } from "./icons.js";
+import { followTarget, live, page, tell } from "./live_events.js";
+import { colour, drawPlots } from "./plots.js";
+import { ask, current } from "./server.js";
+import { attempt, draw, say, ui } from "./ui.js";
+
+const HOLD = 500; // ms that the button for enabling must be pressed
+const PULSE = 100; // ms between two commands that prolong a movement; each lasts 250 ms at most
+
+let chosen = /** @type {Set<string> | null} */ (null); // the names of the signals in the plots; null: the first ones
+let refused = null; // the last error: {message, hint}
+let port = ""; // the port in the field
+let drawing = false;
+
+/** @param {State} state */
+export const liveTitle = ({ live: { target } }) =>
+  target ? `Live ${isEnabled(target) ? "● enabled" : "○ disabled"}` : "Live";
+
+const isEnabled = (target) => target.state.enabled === "1";
+
+async function request(action, body) {
+  const answer = await ask(action, body);
+  refused = answer.error ?? null;
+  if (refused) say(`Refused: ${refused.message}`);
+  draw();
+  return answer;
+}
+
+/** @param {State} state */
+export function livePanel(state) {
+  const { target } = state.live;
+  if (!target) return [problemPart(state.live.problem), problemPart(refused), portsPart(state.live)];
+  followTarget(target.signals, (all) => (all ? draw() : drawSoon()));
+  return [
+    headPart(target),
+    problemPart(refused),
+    signalsPart(target),
+    h("div.plots", { key: "plots", keep: true, shown: (place) => drawNow(place, target) }),
+    h(
+      "div.live-columns",
+      { key: "columns" },
+      setpointsPart(target),
+      parametersPart(target),
+      actuatorsPart(target),
+      linesPart(),
+    ),
+  ];
+}
+
+const problemPart = (problem) =>
+  problem &&
+  h("p.failed-end", { key: "problem" }, icon("error"), h("b", problem.message), h("span.hint", problem.hint));
+
+// Before a connection
+
+function portsPart({ ports }) {
+  const list = h("datalist", { id: "live-ports" }, ports.map((each) => h("option", { key: each.path, value: each.path })));
+  const shown = port || ports[0]?.path || "";
+  return h(
+    "form",
+    {
+      key: "ports",
+      onsubmit: (event) => {
+        event.preventDefault();
+        request("connect", { path: port || shown });
+      },
+    },
+    h("p.empty", "Watch and tune a running target: a board with the console on a serial port, or a program on this computer."),
+    h("label", { for: "live-port" }, "Port "),
+    h("input", {
+      id: "live-port",
+      type: "text",
+      list: "live-ports",
+      initial: shown,
+      spellcheck: "false",
+      oninput: (event) => {
+        port = event.target.value;
+      },
+    }),
+    list,
+    " ",
+    h("button", { class: "primary" }, "Connect"),
+    h(
+      "p.hint",
+      ports.length
+        ? ports.map((each) => `${each.path} ${each.device}`).join(", ")
+        : "There is no serial port. A program has one with --console-pty PATH.",
+    ),
+  );
+}
+
+// The head: state, stop, enable
+
+function headPart(target) {
+  const enabled = isEnabled(target);
+  const { fault } = target.state;
+  return h(
+    "div.live-head",
+    { key: "head" },
+    h(
+      "button",
+      { key: "stop", class: "stop", title: "Space bar", onpointerdown: stop, onclick: stop },
+      "Stop",
+    ),
+    h(
+      "p",
+      { key: "state", class: enabled ? "live-enabled" : "", role: "status" },
+      h("b", target.name),
+      enabled ? " enabled" : " disabled",
+      fault !== "none" && h("span.failed-end", ` fault: ${fault.replaceAll("_", " ")}`),
+      !target.matches && h("span.failed-end", " another firmware than that of the last build: it can only be watched"),
+      live.dropped > 0 && h("span.hint", ` ${live.dropped} rows dropped`),
+    ),
+    h(
+      "button",
+      { key: "enable", disabled: enabled || !target.matches, ...held(() => request("enable", { page })) },
+      "Enable (hold)",
+    ),
+    h("button.quiet", { key: "disconnect", onclick: () => request("disconnect") }, "Disconnect"),
+    h("p.hint", { key: "hint" }, "The space bar stops. It is not an emergency stop, and does nothing while another window is in front."),
+  );
+}
+
+// Disables the target. It has a connection of its own, and is never behind other requests.
+function stop() {
+  request("stop");
+}
+
+// Handlers of a button that acts after it was pressed for half a second, with the pointer or with Enter.
+function held(act) {
+  let timer = 0;
+  const begin = () => {
+    if (!timer) timer = window.setTimeout(act, HOLD);
+  };
+  const end = () => {
+    window.clearTimeout(timer);
+    timer = 0;
+  };
+  return {
+    onpointerdown: begin,
+    onpointerup: end,
+    onpointerleave: end,
+    onblur: end,
+    onkeydown: (event) => event.key === "Enter" && begin(),
+    onkeyup: end,
+  };
+}
+
+window.addEventListener("keydown", (event) => spaceBar(event, true), { capture: true });
+window.addEventListener("keyup", (event) => spaceBar(event, false), { capture: true });
+
+// In the tab Live the space bar stops the target, wherever the focus is, and does nothing else.
+function spaceBar(event, stops) {
+  if (event.key !== " " || ui.tab !== "live" || ui.dock === "closed" || !current()?.live?.target) return;
+  event.preventDefault();
+  event.stopPropagation();
+  if (stops && !event.repeat) stop();
+}
+
+// Plots
+
+function shownSignals(target) {
+  if (chosen === null) chosen = new Set(target.signals.slice(0, 4).map((each) => each.name));
+  return target.signals.flatMap((each, index) => (chosen.has(each.name) ? [index] : []));
+}
+
+function signalsPart(target) {
+  const shown = shownSignals(target);
+  const newest = (index) => live.highs[index]?.at(-1) ?? null;
+  return h(
+    "fieldset.live-signals",
+    { key: "signals" },
+    h("legend", "Signals"),
+    target.signals.map((each, index) =>
+      h(
+        "label",
+        { key: each.name },
+        h("input", {
+          type: "checkbox",
+          checked: shown.includes(index),
+          onchange: (event) => {
+            if (event.target.checked) chosen.add(each.name);
+            else chosen.delete(each.name);
+            draw();
+          },
+        }),
+        h("svg", { class: "swatch", viewBox: "0 0 10 10", "aria-hidden": "true" },
+          h("rect", { width: "10", height: "10", fill: colour(index) })),
+        ` ${each.name} `,
+        h("span.value", { id: id("live", String(index)) }, number(newest(index)), each.unit && ` ${each.unit}`),
+      ),
+    ),
+  );
+}
+
+const number = (value) => (value === null ? "–" : String(Number(value.toPrecision(5))));
+
+function drawSoon() {
+  if (drawing || document.hidden) return;
+  drawing = true;
+  requestAnimationFrame(() => {
+    drawing = false;
+    const place = /** @type {HTMLElement | null} */ (document.querySelector(".plots"));
+    const target = current()?.live?.target;
+    if (place && target) drawNow(place, target);
+  });
+}
+
+function drawNow(place, target) {
+  if (!live.times.length || !place.clientWidth) return;
+  drawPlots(place, target.signals, shownSignals(target));
+  target.signals.forEach((each, index) => {
+    const value = document.getElementById(id("live", String(index)));
+    const text = `${number(live.highs[index]?.at(-1) ?? null)}${each.unit ? ` ${each.unit}` : ""}`;
+    if (value && value.textContent !== text) value.textContent = text;
+  });
+}
+
+// Setpoints, parameters, actuators, lines
+
+async function command(line) {
+  const { answer, error } = await request("command", { line });
+  tell([`> ${line}`, ...(answer ?? [`error ${error.message}`])]);
+  draw();
+}
+
+const setpointsPart = ({ setpoints }) =>
+  setpoints.length > 0 &&
+  h(
+    "section",
+    { key: "setpoints" },
+    h("h3", "Setpoints"),
+    setpoints.map((name) => field(id("setpoint", name), name, "", "", (text) => command(`${name}=${text}`))),
+  );
+
+const parametersPart = ({ parameters, matches }) =>
+  parameters.length > 0 &&
+  h(
+    "section",
+    { key: "parameters" },
+    h("h3", "Parameters"),
+    parameters.map((each) => {
+      const changed = each.value !== each.generated;
+      return h(
+        "div.live-parameter",
+        { key: each.name },
+        field(id("parameter", each.name), each.name, String(each.value), each.unit, (text) =>
+          command(`set ${each.name}=${text}`),
+        ),
+        each.low !== null && each.high !== null && slider(each),
+        changed &&
+          matches &&
+          h(
+            "button.quiet",
+            {
+              title: `The firmware was built with ${each.generated}`,
+              onclick: () => attempt("fill", { changes: [{ path: ["parameters", each.name], text: String(each.value) }] }),
+            },
+            "Keep in the bindings",
+          ),
+      );
+    }),
+  );
+
+const slider = (each) =>
+  h("input", {
+    type: "range",
+    "aria-label": each.name,
+    min: each.low,
+    max: each.high,
+    step: (each.high - each.low) / 200,
+    initial: each.value,
+    onchange: (event) => command(`set ${each.name}=${event.target.value}`),
+  });
+
+// A field that sends its text with Enter.
+function field(key, label, text, unit, send) {
+  return h(
+    "div.field",
+    { key },
+    h("label", { for: key }, label),
+    h("input", {
+      id: key,
+      type: "text",
+      inputmode: "decimal",
+      initial: text,
+      spellcheck: "false",
+      onkeydown: (event) => {
+        if (event.key === "Enter" && event.target.value.trim()) send(event.target.value.trim());
+      },
+    }),
+    unit && h("span.hint", unit),
+  );
+}
+
+const actuatorsPart = (target) =>
+  target.actuators.length > 0 &&
+  h(
+    "section",
+    { key: "actuators" },
+    h("h3", "Move by hand"),
+    h("p.hint", isEnabled(target) ? "Stop the target first." : "Hold a button: the actuator moves with a duty of 0.1."),
+    target.actuators.map((name) =>
+      h(
+        "p",
+        { key: name },
+        `${name} `,
+        [-0.1, 0.1].map((duty) =>
+          h(
+            "button",
+            {
+              key: String(duty),
+              "aria-label": `Move ${name} ${duty < 0 ? "backwards" : "forwards"}`,
+              disabled: isEnabled(target) || !target.matches,
+              ...pulsing(() => ask("move", { actuator: name, duty })),
+            },
+            duty < 0 ? "−" : "+",
+          ),
+        ),
+      ),
+    ),
+  );
+
+// Handlers of a button that repeats `act` while it is pressed.
+function pulsing(act) {
+  let timer = 0;
+  const begin = () => {
+    if (timer) return;
+    act();
+    timer = window.setInterval(act, PULSE);
+  };
+  const end = () => {
+    window.clearInterval(timer);
+    timer = 0;
+  };
+  return {
+    onpointerdown: begin,
+    onpointerup: end,
+    onpointerleave: end,
+    onblur: end,
+    onkeydown: (event) => event.key === "Enter" && begin(),
+    onkeyup: end,
+  };
+}
+
+const linesPart = () =>
+  h(
+    "section",
+    { key: "lines" },
+    h("h3", "Console"),
+    h("pre.log", live.lines.join("\n")),
+    field("live-command", "Command", "", "", command),
+  );

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Plots of signals over the last seconds. Each unit has a plot; each signal is a band from its least to its greatest value.
+
+import uPlot from "./vendor/uPlot.esm.js";
+import { live, WINDOW } from "./live_events.js";
+
+const HEIGHT = 180;
+const COLOURS = ["#1668c1", "#c4501b", "#2a8a4a", "#8a3fb0", "#b08a00", "#0d8a91", "#c0307a", "#6b7280"];
+
+/** @type {Map<string, {plot: any, names: string}>} */
+const plots = new Map(); // by unit
+
+export const colour = (index) => COLOURS[index % COLOURS.length];
+
+// Draws the signals `chosen`, indices into `signals`, into `place`.
+export function drawPlots(place, signals, chosen) {
+  const units = [...new Set(chosen.map((index) => signals[index].unit))];
+  for (const [unit, { plot }] of plots) {
+    if (units.includes(unit) && place.contains(plot.root)) continue;
+    plot.destroy();
+    plots.delete(unit);
+  }
+  for (const unit of units) {
+    const indices = chosen.filter((index) => signals[index].unit === unit);
+    drawPlot(place, unit, signals, indices);
+  }
+}
+
+function drawPlot(place, unit, signals, indices) {
+  const names = indices.map((index) => signals[index].name).join();
+  const known = plots.get(unit);
+  if (known && known.names !== names) {
+    known.plot.destroy();
+    plots.delete(unit);
+  }
+  if (!plots.has(unit)) plots.set(unit, { plot: newPlot(place, unit, signals, indices), names });
+  const { plot } = plots.get(unit);
+  if (plot.width !== place.clientWidth) plot.setSize({ width: place.clientWidth, height: HEIGHT });
+  plot.setData([live.times, ...indices.flatMap((index) => [live.highs[index], live.lows[index]])]);
+}
+
+function newPlot(place, unit, signals, indices) {
+  const style = getComputedStyle(document.documentElement);
+  const text = style.getPropertyValue("--muted").trim();
+  const axis = { stroke: text, grid: { stroke: style.getPropertyValue("--line").trim() } };
+  const line = (index, label) => ({ label, stroke: colour(index), width: 1.5, points: { show: false } });
+  const options = {
+    width: place.clientWidth,
+    height: HEIGHT,
+    legend: { show: false },
+    cursor: { show: false },
+    scales: { x: { time: false, range: (_, min, max) => [Math.max(min, max - WINDOW), Math.max(max, min + 1)] } },
+    axes: [axis, { ...axis, label: unit, labelSize: unit ? 20 : 0, size: 60 }],
+    series: [
+      {},
+      ...indices.flatMap((index) => [line(index, signals[index].name), line(index, `${signals[index].name}, least`)]),
+    ],
+    bands: indices.map((index, place) => ({ series: [1 + 2 * place, 2 + 2 * place], fill: `${colour(index)}40` })),
+  };
+  return new uPlot(options, [[]], place);
+}
