@@ -58,7 +58,11 @@ const problemPart = (problem) =>
 // Before a connection
 
 function portsPart({ ports }) {
-  const list = h("datalist", { id: "live-ports" }, ports.map((each) => h("option", { key: each.path, value: each.path })));
+  const list = h(
+    "datalist",
+    { id: "live-ports" },
+    ports.map((each) => h("option", { key: each.path, value: each.path })),
+  );
   const shown = port || ports[0]?.path || "";
   return h(
     "form",
@@ -69,7 +73,10 @@ function portsPart({ ports }) {
         request("connect", { path: port || shown });
       },
     },
-    h("p.empty", "Watch and tune a running target: a board with the console on a serial port, or a program on this computer."),
+    h(
+      "p.empty",
+      "Watch and tune a running target: a board with the console on a serial port, or a program on this computer.",
+    ),
     h("label", { for: "live-port" }, "Port "),
     h("input", {
       id: "live-port",
@@ -101,11 +108,7 @@ function headPart(target) {
   return h(
     "div.live-head",
     { key: "head" },
-    h(
-      "button",
-      { key: "stop", class: "stop", title: "Space bar", onpointerdown: stop, onclick: stop },
-      "Stop",
-    ),
+    h("button", { key: "stop", class: "stop", title: "Space bar", onpointerdown: stop, onclick: stop }, "Stop"),
     h(
       "p",
       { key: "state", class: enabled ? "live-enabled" : "", role: "status" },
@@ -121,7 +124,11 @@ function headPart(target) {
       "Enable (hold)",
     ),
     h("button.quiet", { key: "disconnect", onclick: () => request("disconnect") }, "Disconnect"),
-    h("p.hint", { key: "hint" }, "The space bar stops. It is not an emergency stop, and does nothing while another window is in front."),
+    h(
+      "p.hint",
+      { key: "hint" },
+      "The space bar stops. It is not an emergency stop, and does nothing while another window is in front.",
+    ),
   );
 }
 
@@ -188,8 +195,11 @@ function signalsPart(target) {
             draw();
           },
         }),
-        h("svg", { class: "swatch", viewBox: "0 0 10 10", "aria-hidden": "true" },
-          h("rect", { width: "10", height: "10", fill: colour(index) })),
+        h(
+          "svg",
+          { class: "swatch", viewBox: "0 0 10 10", "aria-hidden": "true" },
+          h("rect", { width: "10", height: "10", fill: colour(index) }),
+        ),
         ` ${each.name} `,
         h("span.value", { id: id("live", String(index)) }, number(newest(index)), each.unit && ` ${each.unit}`),
       ),
@@ -258,7 +268,8 @@ const parametersPart = ({ parameters, matches }) =>
             "button.quiet",
             {
               title: `The firmware was built with ${each.generated}`,
-              onclick: () => attempt("fill", { changes: [{ path: ["parameters", each.name], text: String(each.value) }] }),
+              onclick: () =>
+                attempt("fill", { changes: [{ path: ["parameters", each.name], text: String(each.value) }] }),
             },
             "Keep in the bindings",
           ),

@@ -42,8 +42,8 @@ export async function followTarget(signals, changed) {
 
 function add(time, lows, highs) {
   live.times.push(time);
-  lows.forEach((value, index) => live.lows[index].push(value));
-  highs.forEach((value, index) => live.highs[index].push(value));
+  for (const [index, value] of lows.entries()) live.lows[index].push(value);
+  for (const [index, value] of highs.entries()) live.highs[index].push(value);
   let old = 0;
   while (live.times[old] < time - WINDOW) old++;
   if (old < 100) return; // few moves of long lists

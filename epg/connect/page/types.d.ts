@@ -98,8 +98,43 @@ interface StartState {
   simulation: SimulationRun;
   program: ProgramRun;
   flash: FlashRun;
+  live: Live;
   /** Null while EPG looks for them. */
   simulations: Simulations | null;
+}
+
+/** The connection with a running target. */
+interface Live {
+  ports: { path: string; device: string }[];
+  target: LiveTarget | null;
+  problem: Refusal | null;
+}
+
+interface LiveTarget {
+  path: string;
+  name: string;
+  version: string;
+  hash: string;
+  /** False: the target has another firmware than that of the last build, and can only be watched. */
+  matches: boolean;
+  period: number;
+  /** Control cycles per row; 0: the target has no memory for streams. */
+  every: number;
+  /** The words of the target about its state, such as enabled: "1". */
+  state: Record<string, string>;
+  signals: { name: string; unit: string }[];
+  setpoints: string[];
+  actuators: string[];
+  parameters: LiveParameter[];
+}
+
+interface LiveParameter {
+  name: string;
+  value: number;
+  generated: number;
+  unit: string;
+  low: number | null;
+  high: number | null;
 }
 
 interface Project {

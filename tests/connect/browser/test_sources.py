@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import secrets
 import shutil
@@ -45,6 +46,18 @@ def test_the_linter_has_no_complaint() -> None:
 
 def test_the_types_agree() -> None:
     assert _run("typescript", "--project", HERE) == ""
+
+
+@pytest.mark.parametrize("file", ["uPlot.esm.js", "uPlot.min.css"])
+def test_the_library_is_an_unchanged_copy(file: str) -> None:
+    """The README beside it names the version and the hash."""
+    copy = (PAGE / "vendor" / file).read_bytes()
+    package = npm_package(HERE, "uplot")
+    assert copy == (package / "dist" / file).read_bytes()
+    readme = (PAGE / "vendor/README.md").read_text(encoding="utf-8")
+    version = json.loads((package / "package.json").read_text(encoding="utf-8"))["version"]
+    assert f"| `{file}` | npm `uplot` {version}, `dist/{file}` |" in readme
+    assert hashlib.sha256(copy).hexdigest() in readme
 
 
 def test_each_state_in_a_signature_has_a_type() -> None:

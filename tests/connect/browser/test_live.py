@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Live: a running robot in the page is watched, tuned and stopped, and stops when the page is gone."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.live.test_live import LATE, LEASE, Target
+from tests.middlewares.conftest import build_jiwy
+
+from .axe import violations
+
+Open = Callable[..., Any]
+HOLD = 700  # milliseconds
+
+
+@pytest.fixture(scope="session")
+def jiwy_host(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return build_jiwy(tmp_path_factory.mktemp("jiwy"), "address,undefined")
+
+
+@pytest.fixture
+def target(jiwy_host: Path, tmp_path: Path) -> Iterator[Target]:
+    found = Target(jiwy_host, tmp_path)
+    yield found
+    found.process.kill()
+    found.process.communicate()
+
+
+@pytest.fixture
+def page(jiwy: Any, open_page: Open, target: Target) -> Iterator[Any]:
+    """A page that shows the target, which is disabled."""
+    found = open_page(jiwy.address)
+    found.get_by_role("tab", name="Live").click()
+    found.get_by_label("Port").fill(str(target.port))
+    found.get_by_role("button", name="Connect", exact=True).click()
+    found.get_by_role("button", name="Larger").click()
+    found.get_by_role("tab", name="Live ● enabled").wait_for()
+    found.get_by_role("button", name="Stop").click()
+    found.get_by_role("tab", name="Live ○ disabled").wait_for()
+    yield found
+    jiwy.epg.post("live/disconnect")
+
+
+def enable(page: Any) -> None:
+    button = page.get_by_role("button", name="Enable (hold)")
+    button.click()
+    page.wait_for_timeout(HOLD)
+    assert page.get_by_role("tab", name="Live ○ disabled").is_visible(), "a click is too short"
+    button.click(delay=HOLD)
+    page.get_by_role("tab", name="Live ● enabled").wait_for()
+
+
+def test_a_robot_is_tuned_and_stopped_by_the_space_bar(jiwy: Any, page: Any) -> None:
+    enable(page)
+    page.get_by_role("textbox", name="pan_subscriber").fill("0.5")
+    page.get_by_role("textbox", name="pan_subscriber").press("Enter")
+    page.get_by_text("ok setpoint").wait_for()
+    page.locator(".live-signals .value").first.filter(has_text=re.compile("^0\\.5")).wait_for()
+    assert page.locator(".plots canvas").count() == 1, "the shown signals have one unit"
+
+    # The gain changes while the robot moves, and goes into the bindings.
+    gain = page.get_by_role("textbox", name="Pan\\PID\\kp", exact=True)
+    gain.fill("2.2")
+    gain.press("Enter")
+    keep = page.get_by_role("button", name="Keep in the bindings")
+    keep.click()
+    page.get_by_role("tab", name="Changes ●").wait_for()
+    assert "+  'Pan\\PID\\kp': 2.2\n" in jiwy.epg.state()["draft"]["diff"]
+    jiwy.epg.post("undo")
+
+    # The space bar stops from any focus, and types and presses nothing.
+    for place in (page.get_by_role("textbox", name="tilt_subscriber"), page.get_by_role("button", name="Disconnect")):
+        place.focus()
+        page.keyboard.press("Space")
+        page.get_by_role("tab", name="Live ○ disabled").wait_for()
+        assert page.get_by_role("button", name="Stop").is_visible()
+        if place == page.get_by_role("textbox", name="tilt_subscriber"):
+            assert place.input_value() == ""
+        enable(page)
+    page.get_by_role("button", name="Stop").click()
+
+    assert violations(page) == []
+    page.set_viewport_size({"width": 400, "height": 700})
+    wide = page.evaluate("document.documentElement.scrollWidth")
+    assert wide <= 400, f"the page is {wide} px wide"
+
+
+def test_an_actuator_moves_while_its_button_is_held(page: Any) -> None:
+    button = page.get_by_role("button", name="Move pwm_pan forwards")
+    before = page.locator(".live-signals .value").first.inner_text()
+    button.click(delay=800)
+    page.wait_for_timeout(600)
+    after = page.locator(".live-signals .value").first.inner_text()
+    assert before != after
+    page.wait_for_timeout(500)
+    assert page.locator(".live-signals .value").first.inner_text() == after, "it has stopped"
+
+
+@pytest.mark.parametrize("end", ["close", "hide"])
+def test_a_page_that_is_gone_stops_the_robot(jiwy: Any, page: Any, target: Target, end: str) -> None:
+    enable(page)
+    page.wait_for_timeout(1000)
+    assert jiwy.epg.state()["live"]["target"]["state"]["enabled"] == "1"
+    if end == "close":
+        page.close()
+    else:
+        page.evaluate("Object.defineProperty(document, 'hidden', {value: true})")
+    begin = time.monotonic()
+    while jiwy.epg.state()["live"]["target"]["state"]["enabled"] == "1":
+        assert time.monotonic() < begin + LEASE + LATE
+        time.sleep(0.01)
+    assert jiwy.epg.state()["live"]["target"]["state"]["fault"] == "operator"
