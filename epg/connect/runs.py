@@ -16,7 +16,7 @@ from epg.connect.places import Places
 from epg.connect.projects import Job
 from epg.connect.run.find_simulation import Simulation, simulations_of
 from epg.connect.run.flash import Boards, FlashRun, boards_for
-from epg.connect.run.program import ProgramRun, command_of
+from epg.connect.run.program import ProgramRun, command_of, port_of
 from epg.connect.run.simulate import SimulationRun, commands_of
 from epg.resolve.application import Application
 from epg.source import Span
@@ -96,17 +96,21 @@ class Runs:
         self._simulation = SimulationRun(self._changed)
         self._simulation.start(simulation, anyway=anyway)
 
-    def run_program(self, path: str, agreed: str) -> None:
-        """Runs a product of the last build in real time, if the user has agreed.  Raises Refused."""
+    def run_program(self, path: str, agreed: str, *, console: bool) -> None:
+        """Runs a product of the last build in real time, if the user has agreed.  Raises Refused.
+
+        With a ``console``, the page can connect with it.
+        """
         self.check_idle()
         product = self._product(path)
         if not product["runs"]:
             raise Refused(f"{Path(path).name} does not run on this computer", status=409)
         program = Path(path)
-        question = question_about_program(command_of(program), program.parent)
+        port = port_of(program) if console else None
+        question = question_about_program(command_of(program, port), program.parent)
         if self._ask("program", question, agreed, {}) is None:
             self._program = ProgramRun(self._changed)
-            self._program.start(program)
+            self._program.start(program, port)
 
     def find_boards(self, job: Job, application: Application) -> None:
         """Looks for boards to which the products of the last build can be written.  Raises Refused."""
@@ -175,6 +179,11 @@ class Runs:
         if activity is None:
             raise Refused(f"there is no log of '{name}'", status=404)
         return activity.lines(start)
+
+    @property
+    def port(self) -> str:
+        """The terminal of the program that runs; empty if there is none."""
+        return str(self._program.shown["port"]) if self._program.is_running else ""
 
     @property
     def plot(self) -> str:

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import epg
+from epg.check.communication import CONSOLE
 from epg.connect.body import Body, Refused, bodies, boolean, ends, keys, names, number, text
 from epg.connect.build.plan import make_plan
 from epg.connect.component_edits import add, copy, fill, remove, rename, take_back
@@ -109,7 +110,7 @@ class Session:
             "generate": self._generate,
             "simulate": self._simulate,
             "flash": self._flash,
-            "run": lambda body: self.runs.run_program(text(body, "path"), text(body, "run", "")),
+            "run": self._run,
             "done": lambda body: self.ended.set(),
         }
         self._unlocked: dict[str, Callable[[Body], None]] = {
@@ -131,7 +132,7 @@ class Session:
         with self._changed:
             places = self._editor.loaded.places if self._editor is not None else None
             shown = {"version": self._version, "epg": epg.__version__, **self._shown}
-            return shown | self.runs.state(places) | {"live": self.live.state()}
+            return shown | self.runs.state(places) | {"live": self.live.state(self.runs.port)}
 
     def wait(self, after: int, timeout: float) -> State:
         """The state, once its version differs from ``after``, the session ends, or ``timeout`` seconds have passed."""
@@ -461,6 +462,12 @@ class Session:
             self._check_ready()
         self._save({})
         self.runs.simulate(simulation, anyway=anyway)
+
+    def _run(self, body: Body) -> None:
+        configuration = self._opened().loaded.parts.configuration
+        used = configuration.communication.middlewares if configuration is not None else ()
+        console = any(middleware.name == CONSOLE for middleware in used)
+        self.runs.run_program(text(body, "path"), text(body, "run", ""), console=console)
 
     def _flash(self, body: Body) -> None:
         """Without "board": looks for boards.  With it: writes the last product to this board."""

@@ -44,7 +44,9 @@ def test_a_program_runs_until_it_is_stopped(built: Path, tmp_path: Path, monkeyp
         (product,) = build["products"]
         assert product["runs"] and product["path"] == str(built / "build/robot_host")
         ask = page.post("run", path=product["path"])["program"]["ask"]
-        assert [command.split()[-2:] for command in ask["commands"]] == [["--realtime", "--duration=86400"]]
+        (command,) = ask["commands"]
+        assert command.split()[-2:] == ["--realtime", "--duration=86400"]
+        assert "--console-pty=" in command and command.count("robot_host.port") == 1
         assert page.state()["program"]["state"] == "idle" and not processes(built)
         page.post("run", path=product["path"], run=ask["key"])
         page.until(lambda state: state["program"]["state"] == "running")
@@ -54,6 +56,11 @@ def test_a_program_runs_until_it_is_stopped(built: Path, tmp_path: Path, monkeyp
             assert refusal.value.status == 409
         time.sleep(1)
         assert len(processes(built)) == 1
+        first = page.state()["live"]["ports"][0]
+        assert first == {"path": str(built / "build/robot_host.port"), "device": "the program that runs"}
+        page.post("live/connect", path=first["path"])
+        assert page.state()["live"]["target"]["matches"], "its hash is that of the build"
+        page.post("live/disconnect")
         page.post("cancel")
         state = page.until(lambda state: state["program"]["state"] != "running")
         assert state["program"]["state"] == "cancelled" and not processes(built)

@@ -95,7 +95,7 @@ function portsPart({ ports }) {
       "p.hint",
       ports.length
         ? ports.map((each) => `${each.path} ${each.device}`).join(", ")
-        : "There is no serial port. A program has one with --console-pty PATH.",
+        : "There is no serial port. Run in the tab Build starts a program of this computer with a port.",
     ),
   );
 }

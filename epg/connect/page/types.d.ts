@@ -412,6 +412,8 @@ interface FlashRun extends Activity {
 interface ProgramRun extends Activity {
   /** The path of the program; empty before the first run. */
   program: string;
+  /** The terminal of its console; empty if it has none. */
+  port: string;
 }
 
 interface SimulationRun extends Activity {

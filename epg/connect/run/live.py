@@ -118,11 +118,13 @@ class Live:
         """The events of the connection, until it ends.  Raises Refused if there is none."""
         return self._now().events()
 
-    def state(self) -> dict[str, Any]:
-        """The connection for the page's state."""
+    def state(self, program: str) -> dict[str, Any]:
+        """The connection for the page's state.  ``program`` is the terminal of a program that runs, or empty."""
         connected = self._connected
+        found = [(program, "the program that runs")] if program else []
+        found += [(str(path), device) for path, device in ports().items()]
         return {
-            "ports": [{"path": str(path), "device": device} for path, device in ports().items()],
+            "ports": [{"path": path, "device": device} for path, device in found],
             "target": connected.state() if connected is not None else None,
             "problem": self._problem,
         }

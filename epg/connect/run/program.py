@@ -20,16 +20,17 @@ _TAIL = 5
 
 
 class ProgramRun(Activity):
-    """One run of a program.  ``program`` in its state is the path of the program."""
+    """One run of a program.  Its state has the ``program``, and the ``port`` of its console, or an empty text."""
 
-    more: ClassVar = {"program": "", "can_try": False}
+    more: ClassVar = {"program": "", "port": "", "can_try": False}
 
-    def start(self, program: Path) -> None:
-        self.shown["program"] = str(program)
-        self.begin(lambda: self._run(program))
+    def start(self, program: Path, port: Path | None) -> None:
+        """``port`` is the terminal that the program makes for its console; None: it has no console."""
+        self.shown |= {"program": str(program), "port": str(port or "")}
+        self.begin(lambda: self._run(program, port))
 
-    def _run(self, program: Path) -> Outcome:
-        status = self.run("run", command_of(program), program.parent, os.environ)
+    def _run(self, program: Path, port: Path | None) -> Outcome:
+        status = self.run("run", command_of(program, port), program.parent, os.environ)
         if self.is_cancelled:
             return Outcome("cancelled")
         if status == 0:
@@ -39,6 +40,12 @@ class ProgramRun(Activity):
         return Outcome("failed", [Message("error", text, id="run-failed")])
 
 
-def command_of(program: Path) -> tuple[str, ...]:
+def command_of(program: Path, port: Path | None) -> tuple[str, ...]:
     """The command that runs ``program`` in real time.  It gives no setpoint, and does not enable the target."""
-    return (str(program), "--realtime", f"--duration={LONGEST}")
+    console = () if port is None else (f"--console-pty={port}",)
+    return (str(program), *console, "--realtime", f"--duration={LONGEST}")
+
+
+def port_of(program: Path) -> Path:
+    """The terminal of a program's console: a link beside the program."""
+    return program.with_name(f"{program.name}.port")

@@ -88,6 +88,7 @@ def test_a_robot_is_tuned_and_stopped_by_the_space_bar(jiwy: Any, page: Any) -> 
 
     assert violations(page) == []
     page.set_viewport_size({"width": 400, "height": 700})
+    page.wait_for_timeout(300)
     wide = page.evaluate("document.documentElement.scrollWidth")
     assert wide <= 400, f"the page is {wide} px wide"
 
