@@ -111,7 +111,7 @@ class Live:
         self._now().move(actuator, duty)
 
     def stop(self) -> None:
-        """Disables the target, whoever has enabled it.  Raises Refused."""
+        """Disables the target, also if another program has enabled it.  Raises Refused."""
         self._now().stop()
 
     def events(self) -> Iterator[dict[str, Any]]:
