@@ -14,6 +14,7 @@ These requests are refused even with the secret: requests of other users of this
 from __future__ import annotations
 
 import base64
+import contextlib
 import hashlib
 import itertools
 import json
@@ -308,8 +309,9 @@ class _Handler(BaseHTTPRequestHandler):
         self.send_header("Content-Type", "application/x-ndjson")
         self.send_header("Connection", "close")
         self.end_headers()
-        for event in itertools.chain((first,), events):
-            self.wfile.write(json.dumps(event, allow_nan=False).encode() + b"\n")
+        with contextlib.suppress(TimeoutError):  # the page has not read for a minute
+            for event in itertools.chain((first,), events):
+                self.wfile.write(json.dumps(event, allow_nan=False).encode() + b"\n")
 
     def _body(self) -> dict[str, object]:
         """The JSON object of a request.  Forms of other pages cannot send JSON, so they are refused here."""
