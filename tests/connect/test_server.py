@@ -233,10 +233,11 @@ def test_only_files_of_the_page_are_given_out(page: Page) -> None:
 
 
 def test_every_file_of_the_page_is_there(page: Page) -> None:
-    for path in (ROOT / "epg/connect/page").iterdir():
-        if path.name == "types.d.ts":  # for the compiler that checks the scripts
+    folder = ROOT / "epg/connect/page"
+    for path in filter(Path.is_file, folder.rglob("*")):
+        if path.name.endswith((".d.ts", ".md", ".LICENSE")):  # for compilers and developers
             continue
-        data, headers = page.get(path.name)
+        data, headers = page.get(path.relative_to(folder).as_posix())
         assert data == path.read_bytes()
         assert headers["Content-Type"].split("/")[0] in ("text", "image")
 
