@@ -28,8 +28,8 @@ static uint32_t deeper(uint32_t depth)
 static double functions(double x)
 {
     return sin(x) + cos(x) + tan(x) + asin(x) + acos(x) + atan(x) + atan2(x, 0.5) + sinh(x) + cosh(x) + tanh(x) +
-           asinh(x) + acosh(x) + atanh(x) + exp(x) + log(x) + log10(x) + pow(x, 0.5) + sqrt(x) + cbrt(x) + hypot(x, 0.5) +
-           floor(x) + ceil(x) + round(x) + trunc(x) + fmod(x, 0.5) + ldexp(x, 2) + fabs(x);
+           asinh(x) + acosh(x) + atanh(x) + exp(x) + log(x) + log10(x) + pow(x, 0.5) + sqrt(x) + cbrt(x) +
+           hypot(x, 0.5) + floor(x) + ceil(x) + round(x) + trunc(x) + fmod(x, 0.5) + ldexp(x, 2) + fabs(x);
 }
 
 void bench_step(const bench_inputs_t *inputs, bench_outputs_t *outputs)
