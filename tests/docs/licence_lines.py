@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The sources that must name the licence at their beginning, and the form of that line.
 
-Excluded are libraries of others, files without comments, and inputs and models of tests and examples, because tests count their lines.
+Excluded are libraries of others, files without comments, and inputs and models of tests and examples, because tests
+count their lines.
 """
 
 from __future__ import annotations
