@@ -5,6 +5,7 @@ import { h, id } from "./dom.js";
 import { icon } from "./icons.js";
 import { followTarget, live, page, tell } from "./live_events.js";
 import { colour, drawPlots } from "./plots.js";
+import { held, repeated } from "./press.js";
 import { ask, current } from "./server.js";
 import { attempt, draw, say, ui } from "./ui.js";
 
@@ -120,7 +121,7 @@ function headPart(target) {
     ),
     h(
       "button",
-      { key: "enable", disabled: enabled || !target.matches, ...held(() => request("enable", { page })) },
+      { key: "enable", disabled: enabled || !target.matches, ...held(() => request("enable", { page }), HOLD) },
       "Enable (hold)",
     ),
     h("button.quiet", { key: "disconnect", onclick: () => request("disconnect") }, "Disconnect"),
@@ -135,26 +136,6 @@ function headPart(target) {
 // Disables the target. It has a connection of its own, and is never behind other requests.
 function stop() {
   request("stop");
-}
-
-// Handlers of a button that acts after it was pressed for half a second, with the pointer or with Enter.
-function held(act) {
-  let timer = 0;
-  const begin = () => {
-    if (!timer) timer = window.setTimeout(act, HOLD);
-  };
-  const end = () => {
-    window.clearTimeout(timer);
-    timer = 0;
-  };
-  return {
-    onpointerdown: begin,
-    onpointerup: end,
-    onpointerleave: end,
-    onblur: end,
-    onkeydown: (event) => event.key === "Enter" && begin(),
-    onkeyup: end,
-  };
 }
 
 window.addEventListener("keydown", (event) => spaceBar(event, true), { capture: true });
@@ -327,7 +308,7 @@ const actuatorsPart = (target) =>
               key: String(duty),
               "aria-label": `Move ${name} ${duty < 0 ? "backwards" : "forwards"}`,
               disabled: isEnabled(target) || !target.matches,
-              ...pulsing(() => ask("move", { actuator: name, duty })),
+              ...repeated(() => ask("move", { actuator: name, duty }), PULSE),
             },
             duty < 0 ? "−" : "+",
           ),
@@ -335,28 +316,6 @@ const actuatorsPart = (target) =>
       ),
     ),
   );
-
-// Handlers of a button that repeats `act` while it is pressed.
-function pulsing(act) {
-  let timer = 0;
-  const begin = () => {
-    if (timer) return;
-    act();
-    timer = window.setInterval(act, PULSE);
-  };
-  const end = () => {
-    window.clearInterval(timer);
-    timer = 0;
-  };
-  return {
-    onpointerdown: begin,
-    onpointerup: end,
-    onpointerleave: end,
-    onblur: end,
-    onkeydown: (event) => event.key === "Enter" && begin(),
-    onkeyup: end,
-  };
-}
 
 const linesPart = () =>
   h(

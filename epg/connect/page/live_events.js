@@ -35,8 +35,11 @@ export async function followTarget(signals, changed) {
   } catch {
     // the state says that the connection has ended
   } finally {
-    reading = false;
-    changed(true);
+    // The state without the target arrives soon. If the target is still connected then, the events go on.
+    setTimeout(() => {
+      reading = false;
+      changed(true);
+    }, 1000);
   }
 }
 

@@ -104,6 +104,25 @@ def test_an_actuator_moves_while_its_button_is_held(page: Any) -> None:
     assert page.locator(".live-signals .value").first.inner_text() == after, "it has stopped"
 
 
+def test_a_release_is_heard_after_the_page_was_drawn_again(jiwy: Any, page: Any) -> None:
+    def press_and_release(button: Any) -> None:
+        button.hover()
+        page.mouse.down()
+        page.wait_for_timeout(150)
+        jiwy.epg.post("reload")
+        page.wait_for_timeout(150)
+        page.mouse.up()
+
+    press_and_release(page.get_by_role("button", name="Enable (hold)"))
+    page.wait_for_timeout(HOLD)
+    assert page.get_by_role("tab", name="Live ○ disabled").is_visible(), "the press was too short"
+    press_and_release(page.get_by_role("button", name="Move pwm_pan forwards"))
+    page.wait_for_timeout(600)
+    stopped = page.locator(".live-signals .value").first.inner_text()
+    page.wait_for_timeout(500)
+    assert page.locator(".live-signals .value").first.inner_text() == stopped
+
+
 @pytest.mark.parametrize("end", ["close", "hide"])
 def test_a_page_that_is_gone_stops_the_robot(jiwy: Any, page: Any, target: Target, end: str) -> None:
     enable(page)
