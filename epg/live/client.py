@@ -145,14 +145,6 @@ class Client:
         """
         self._ask(b"C", b"disable", "disable")
 
-    def enable_leased(self) -> None:
-        """Enables the target as long as the numbers that it sends come back.
-
-        :raises Refused: the target refused it
-        :raises Lost: there is no answer
-        """
-        self.command("enable leased")
-
     def move(self, actuator: str, duty: float, milliseconds: int = 250) -> None:
         """Moves an actuator of a disabled target for a short time.  The same call before its end prolongs the movement.
 

@@ -12,6 +12,9 @@ import pytest
 from epg.diagnostics import Diagnostics
 from epg.new_project import ProjectRequest, write_project
 from tests.connect.page import Page, serving_pages, session_of
+from tests.live.target import jiwy_host, target
+
+__all__ = ["jiwy_host", "target"]
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 

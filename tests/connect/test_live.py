@@ -18,23 +18,9 @@ import pytest
 
 from epg.connect.server import SECRET
 from tests.connect.page import Denied, Page, serving, session_of
-from tests.live.test_live import LATE, LEASE, Target
-from tests.middlewares.conftest import build_jiwy
+from tests.live.target import LATE, LEASE, Target
 
 ROOT = Path(__file__).resolve().parents[2]
-
-
-@pytest.fixture(scope="session")
-def jiwy_host(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return build_jiwy(tmp_path_factory.mktemp("jiwy"), "address,undefined")
-
-
-@pytest.fixture
-def target(jiwy_host: Path, tmp_path: Path) -> Iterator[Target]:
-    found = Target(jiwy_host, tmp_path)
-    yield found
-    found.process.kill()
-    found.process.communicate()
 
 
 @pytest.fixture

@@ -62,10 +62,6 @@ class Live:
         self._connected: _Connection | None = None
         self._problem: dict[str, str] | None = None
 
-    @property
-    def is_connected(self) -> bool:
-        return self._connected is not None
-
     def connect(self, path: Path, expected: str, baud: int = 115200) -> None:
         """Connects with the target behind ``path``.  ``expected`` is the hash of the firmware that was built; "": none.
 

@@ -6,31 +6,16 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
 
-from tests.live.test_live import LATE, LEASE, Target
-from tests.middlewares.conftest import build_jiwy
+from tests.live.target import LATE, LEASE, Target
 
 from .axe import violations
 
 Open = Callable[..., Any]
 HOLD = 700  # milliseconds
-
-
-@pytest.fixture(scope="session")
-def jiwy_host(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return build_jiwy(tmp_path_factory.mktemp("jiwy"), "address,undefined")
-
-
-@pytest.fixture
-def target(jiwy_host: Path, tmp_path: Path) -> Iterator[Target]:
-    found = Target(jiwy_host, tmp_path)
-    yield found
-    found.process.kill()
-    found.process.communicate()
 
 
 @pytest.fixture
