@@ -12,35 +12,33 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 import epg
 from epg.check.communication import CONSOLE
-from epg.connect.body import Body, Refused, bodies, boolean, ends, keys, names, number, text
+from epg.connect.body import Body, Refused, boolean, number, text
 from epg.connect.build.plan import make_plan
-from epg.connect.component_edits import add, copy, fill, remove, rename, take_back
 from epg.connect.configurations import Configurations
 from epg.connect.creation import create
-from epg.connect.draft import RemoveValue, SetEnds, SetValue
 from epg.connect.editor import Editor
+from epg.connect.edits import EDITS
 from epg.connect.excerpt import excerpt
 from epg.connect.files import Unsavable
-from epg.connect.forms import PARAMETERS
 from epg.connect.other_targets import new_errors, readers
 from epg.connect.overview import Overview
 from epg.connect.pictures import draw
-from epg.connect.pinout import chosen_pin, draw_pinout, first_pins, options_view
+from epg.connect.pinout import draw_pinout, options_view
 from epg.connect.projects import Job, find_jobs, system_jobs
 from epg.connect.run.find_simulation import simulations_of
 from epg.connect.run.live import Live, built_hash
 from epg.connect.runs import Runs, find_simulation
 from epg.connect.start import Start
 from epg.connect.targets import Targets
-from epg.connect.view import diagnostic_view
+from epg.connect.view import diagnostic_view, proposals_of
 from epg.diagnostics import Diagnostics
-from epg.edit.bindings import CannotEdit, End
+from epg.edit.bindings import CannotEdit
 
 __all__ = ["Refused", "Session", "State"]
 
@@ -86,22 +84,6 @@ class Session:
         self.runs = Runs(self._bump)
         self.live = Live(self._bump)
         self._actions: dict[str, Callable[[Body], None]] = {
-            "connect": self._connect,
-            "rewire": self._rewire,
-            "disconnect": self._disconnect,
-            "accept": self._accept,
-            "leave_out": self._leave_out,
-            "unset": self._unset,
-            "choose_pin": self._choose_pin,
-            "first_pins": self._first_pins,
-            "fill": self._fill,
-            "take_back": self._take_back,
-            "add": self._add,
-            "copy": self._copy,
-            "rename": self._rename,
-            "remove": self._remove,
-            "undo": lambda body: self._opened().undo(),
-            "redo": lambda body: self._opened().redo(),
             "save": self._save,
             "reload": self._reload,
             "choose": self._choose,
@@ -125,7 +107,7 @@ class Session:
     @property
     def actions(self) -> tuple[str, ...]:
         """The names that :meth:`act` takes."""
-        return (*self._actions, *self._unlocked)
+        return (*EDITS, *self._actions, *self._unlocked)
 
     def state(self) -> State:
         """The present state, without a look at the files."""
@@ -153,10 +135,13 @@ class Session:
         try:
             if action in self._unlocked:
                 self._unlocked[action](body)
-            elif action in self._actions:
+            elif action in EDITS or action in self._actions:
                 self._look(at_once=True)
                 with self._changed:
-                    self._actions[action](body)
+                    if action in EDITS:
+                        EDITS[action](self._opened(), body)
+                    else:
+                        self._actions[action](body)
                     self._publish()
             else:
                 raise Refused(f"there is no action '{action}'", status=404)
@@ -232,110 +217,6 @@ class Session:
         return self._editor is not None and self._editor.draft.changed
 
     # actions of the user
-
-    def _connect(self, body: Body) -> None:
-        self._opened().edit((self._wires(body),))
-
-    def _rewire(self, body: Body) -> None:
-        """Changes the wires of several ports in one step.  "ends" of null removes a port from the bindings."""
-        changes = bodies(body, "changes")
-        self._opened().edit(
-            tuple(
-                SetEnds(text(change, "port"), None) if change.get("ends") is None else self._wires(change)
-                for change in changes
-            )
-        )
-
-    def _wires(self, body: Body) -> SetEnds:
-        port, wires = text(body, "port"), ends(body)
-        model = self._opened().loaded.parts.model
-        if model is not None and len(wires) != 1 and port in [p.name for p in model.inputs]:
-            raise Refused(f"input '{port}' must be bound to one component", "to remove its wire, disconnect it")
-        return SetEnds(port, wires)
-
-    def _disconnect(self, body: Body) -> None:
-        self._opened().edit((SetEnds(text(body, "port"), None),))
-
-    def _accept(self, body: Body) -> None:
-        proposals = self._shown.get("proposals", {})
-        wanted = names(body, "ports", list(proposals))
-        for name in wanted:
-            if name not in proposals:
-                raise Refused(f"there is no proposal for '{name}'", "connect it by hand")
-        if wanted:
-            self._opened().edit(tuple(SetEnds(name, (End(proposals[name]),)) for name in wanted))
-
-    def _leave_out(self, body: Body) -> None:
-        """Removes all parts of the robot that no port uses."""
-        parts = self._opened().unused_parts()
-        if not parts:
-            raise Refused("no part of the robot is unused", "connect all ports first", 409)
-        self._opened().edit(tuple(SetValue(("components", *part), None) for part in parts))
-
-    def _unset(self, body: Body) -> None:
-        """Removes keys from the ``.tcf``, in one step: the values of the extended file, or the defaults, hold again."""
-        paths = body.get("paths")
-        if not isinstance(paths, list):
-            raise Refused("'paths' must be a list of lists of keys")
-        self._of_the_user().edit(tuple(RemoveValue(keys(path)) for path in paths))
-
-    def _choose_pin(self, body: Body) -> None:
-        """Gives a signal of a component another pin.  Signals that must be beside it follow."""
-        editor = self._of_the_user()
-        signal = text(body, "component"), text(body, "signal")
-        editor.edit(chosen_pin(editor.loaded, signal, text(body, "pin")))
-
-    def _first_pins(self, body: Body) -> None:
-        """Gives the first pins that fit to "signals", by default to all signals without a pin."""
-        editor = self._of_the_user()
-        wanted = [(text(each, "component"), text(each, "signal")) for each in bodies(body, "signals")] if body else None
-        editor.edit(first_pins(editor.loaded, wanted))
-
-    def _fill(self, body: Body) -> None:
-        """Gives values the texts of their fields, in one step.  An empty text means the default."""
-        changes = [(keys(each.get("path")), text(each, "text", "").strip()) for each in bodies(body, "changes")]
-        editor = self._holding([path for path, _ in changes])
-        editor.edit(tuple(c for path, wanted in changes for c in fill(editor.forms, editor.loaded, path, wanted)))
-
-    def _take_back(self, body: Body) -> None:
-        """Removes a value from the project's own file: the inherited value, or the default, holds again."""
-        path = keys(body.get("path"))
-        editor = self._holding([path])
-        editor.edit(tuple(take_back(editor.forms, editor.loaded, path)))
-
-    def _holding(self, paths: Sequence[Sequence[str]]) -> Editor:
-        """The editor.  Parameters of the model are in the bindings, all other values in the ``.tcf``."""
-        return self._opened() if all(path[0] == PARAMETERS for path in paths) else self._of_the_user()
-
-    def _add(self, body: Body) -> None:
-        """Adds a component.  Pins that are not given are free ones that fit."""
-        editor, name = self._of_the_user(), text(body, "name")
-        given = body.get("values")
-        if not isinstance(given, Mapping):
-            raise Refused("'values' must be an object")
-        values = {key: text(given, key, "").strip() for key in given}
-        operation = add(editor.forms, editor.loaded, text(body, "kind"), name, values)
-        editor.edit(editor.with_pins(operation, name))
-
-    def _copy(self, body: Body) -> None:
-        """Copies a component.  The copy gets free pins."""
-        editor, name = self._of_the_user(), text(body, "name")
-        editor.edit(editor.with_pins(copy(editor.loaded, text(body, "component"), name), name))
-
-    def _rename(self, body: Body) -> None:
-        editor = self._of_the_user()
-        editor.edit(rename(editor.loaded, editor.users, text(body, "component"), text(body, "name")))
-
-    def _remove(self, body: Body) -> None:
-        editor = self._of_the_user()
-        editor.edit(remove(editor.loaded, editor.users, text(body, "component")))
-
-    def _of_the_user(self) -> Editor:
-        """The editor.  Raises Refused if the open target uses a ``.tcf`` of EPG itself."""
-        editor = self._opened()
-        if not editor.owns_tcf:
-            raise Refused("this file cannot be changed", editor.project().fixed, 409)
-        return editor
 
     def _save(self, body: Body) -> None:
         editor = self._opened()
@@ -457,7 +338,7 @@ class Session:
         if ask is not None:
             return
         if wires:
-            self._accept({})
+            EDITS["accept"](self._opened(), {})
             self._publish()
             self._check_ready()
         self._save({})
@@ -482,7 +363,7 @@ class Session:
 
     def _missing_wires(self) -> dict[str, str]:
         """The proposed wires, if they correct all errors of the target; else none."""
-        proposals: dict[str, str] = self._shown.get("proposals", {})
+        proposals = proposals_of(self._opened().loaded)
         errors = [problem for problem in self._shown["diagnostics"] if problem["severity"] == "error"]
         proposed = all(problem["id"] == "unbound-input" and problem["port"] in proposals for problem in errors)
         return proposals if errors and proposed else {}

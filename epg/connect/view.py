@@ -34,27 +34,32 @@ Data = dict[str, Any]
 def view_of(loaded: Loaded) -> Data:
     """The part of the state that follows from the files and the draft."""
     model = loaded.parts.model
-    wires = _wires(loaded)
-    taken = {end["reference"] for ends in wires.values() for end in ends}
     return {
         "model": model_view(model) if model is not None else None,
         "components": _components(loaded),
-        "wires": wires,
+        "wires": _wires(loaded),
         "by_system": loaded.by_system,
-        "proposals": {
-            name: match.proposal
-            for name, match in loaded.matches.items()
-            if name not in wires
-            and name not in loaded.by_system
-            and match.proposal is not None
-            and (match.port.direction == "input" or match.proposal not in taken)
-        },
+        "proposals": proposals_of(loaded),
         "candidates": {name: list(match.candidates) for name, match in loaded.matches.items()},
         "fits": {name: _fitting(match, loaded) for name, match in loaded.matches.items()},
         "diagnostics": [diagnostic_view(diagnostic, loaded.places) for diagnostic in loaded.diagnostics],
         "hardware": _hardware(loaded),
         "units": {unit: [dimension, float(factor)] for unit, (dimension, factor) in UNITS.items()},
         "pictures": pictures(loaded),
+    }
+
+
+def proposals_of(loaded: Loaded) -> dict[str, str]:
+    """The proposed reference of each port that has no wire.  An output gets no terminal that has a wire already."""
+    wires = _wires(loaded)
+    taken = {end["reference"] for ends in wires.values() for end in ends}
+    return {
+        name: match.proposal
+        for name, match in loaded.matches.items()
+        if name not in wires
+        and name not in loaded.by_system
+        and match.proposal is not None
+        and (match.port.direction == "input" or match.proposal not in taken)
     }
 
 
