@@ -131,7 +131,7 @@ def _own(editor: Editor) -> Editor:
 
 
 def _holding(editor: Editor, paths: Sequence[Sequence[str]]) -> None:
-    """Raises Refused if one of ``paths`` is in a ``.tcf`` of EPG itself.  Parameters of the model are in the bindings."""
+    """Raises Refused if EPG itself owns the file of one of ``paths``.  Parameters are in the bindings of the user."""
     if not all(path[0] == PARAMETERS for path in paths):
         _own(editor)
 

@@ -16,7 +16,8 @@ from epg.connect.body import Refused
 from epg.connect.draft import SetValue
 from epg.connect.loaded import Loaded
 from epg.documents.items import pin_list
-from epg.graph.wiring import Choice, draw_wiring, printed_names
+from epg.graph.terminals import printed_names
+from epg.graph.wiring import Choice, draw_wiring
 from epg.resolve.first_fit import Signal, first_fit, signals_of, usable_pin
 from epg.resolve.pin_options import PinOption
 

@@ -20,7 +20,7 @@ from epg.diagnostics import Diagnostic
 from epg.edit.bindings import End, ends_of
 from epg.emit.hardware import hardware_rows
 from epg.graph.application import conversion
-from epg.graph.wiring import wire_texts
+from epg.graph.terminals import wire_texts
 from epg.models.model import Model, Port
 from epg.quantity import UNITS, normal_unit
 from epg.resolve.application import Step

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from epg.dataclass import dataclass
 from epg.emit.topics import Topics
 from epg.graph.svg import Picture, width
-from epg.graph.wiring import wire_texts
+from epg.graph.terminals import wire_texts
 from epg.models.model import Port
 from epg.quantity import show
 from epg.resolve.application import Application, ResolvedComponent, Step, Wire
