@@ -122,6 +122,7 @@ class KindFault:
     name: str
     number: int
     description: str
+    remedy: str  # empty if the kind does not state it
     span: Span
 
 
@@ -300,4 +301,4 @@ def _fault(name: str, node: YamlNode, kind: YamlNode) -> KindFault:
         node["number"].value if "number" in node else 0x100 + crc32(f"{kind['kind'].value}.{name}".encode()) % 0xFF00
     )
     assert isinstance(number, int)
-    return KindFault(name, number, text_of(node, "description"), kind["faults"].key_span(name))
+    return KindFault(name, number, text_of(node, "description"), text_of(node, "remedy"), kind["faults"].key_span(name))

@@ -84,7 +84,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
                             print("\n".join(answer), flush=True)
                     end = time.monotonic() + options.duration if options.duration is not None else float("inf")
                     if shows:
-                        relay.screen = Screen(client, names, values, recording)
+                        relay.screen = Screen(client, names, values, recording, relay.faults)
                         relay.screen.run(end)
                     elif options.duration is not None or not options.send:
                         relay.wait(client, recording, end)
@@ -122,15 +122,23 @@ class _Relay:
     """Passes lines and numbers to the screen, or answers without one."""
 
     def __init__(self) -> None:
+        from epg.cli.arguments import user_roots
+        from epg.data import targets_roots
+        from epg.live.faults import Faults
+
         self.screen: Screen | None = None
         self.lost = ""
+        self.faults = Faults(targets_roots(user_roots()))
         self._numbers: list[int] = []
+        self._states: list[str] = []
 
     def told(self, line: str) -> None:
         if line.startswith("lost "):
             self.lost = line.removeprefix("lost ")
         if self.screen is not None:
             self.screen.told(line)
+        elif line.startswith("state "):
+            self._states.append(line)
 
     def numbered(self, number: int) -> None:
         if self.screen is not None:
@@ -150,10 +158,20 @@ class _Relay:
                 while self._numbers:
                     client.respond(self._numbers.pop(0))
                 recording.drain()
+                self._explain()
                 time.sleep(0.02)
         finally:
             for number, handler in before.items():
                 signal.signal(number, handler)
+
+    def _explain(self) -> None:
+        """Says a new fault in words."""
+        from epg.live.client import words_of
+
+        while self._states:
+            fault = self.faults.explain(dict(words_of(self._states.pop(0))))
+            if fault is not None:
+                sys.stderr.write(f"{fault.text}\nhint: {fault.remedy}\n")
 
 
 def _chosen(client: Client, options: argparse.Namespace) -> list[str]:

@@ -209,7 +209,8 @@ class Session:
         """Connects with the target behind the port "path".  The hash of the last build tells whether it is this one."""
         editor = self._editor
         expected = built_hash(editor.job) if editor is not None else ""
-        self.live.connect(Path(text(body, "path")), expected, int(number(body, "baud", 115200)))
+        roots = editor.job.request.roots if editor is not None else ()
+        self.live.connect(Path(text(body, "path")), expected, int(number(body, "baud", 115200)), roots)
 
     @property
     def has_changes(self) -> bool:

@@ -194,7 +194,7 @@ class Client:
             self._thread.join()
 
     def _describe(self) -> Description:
-        words = dict(_words(self.command("version")[-1]))
+        words = dict(words_of(self.command("version")[-1]))
         ports = [line.split(" ", 3) for line in self.command("ports") if line.startswith("port ")]
 
         def names(category: str) -> tuple[str, ...]:
@@ -293,14 +293,18 @@ class Client:
             self._rows(Rows(number, tick_ns / 1e9, values))
 
 
-def _words(line: str) -> list[tuple[str, str]]:
-    """The words "name=value" of a line."""
+def words_of(line: str) -> list[tuple[str, str]]:
+    """The words "name=value" of a line.
+
+    >>> words_of("state enabled=0 fault=none")
+    [('enabled', '0'), ('fault', 'none')]
+    """
     return [(name, value) for name, sign, value in (word.partition("=") for word in line.split(" ")) if sign]
 
 
 def _parameter(line: str) -> Parameter:
     """The parameter of a line "parameter Pan\\\\PID\\\\kp=2.2 generated=2.6 unit=s min=0 max=5"."""
-    (name, value), *others = _words(line)
+    (name, value), *others = words_of(line)
     known = dict(others)
     low, high = (float(known[key]) if key in known else None for key in ("min", "max"))
     return Parameter(name, float(value), float(known.get("generated", value)), known.get("unit", ""), low, high)

@@ -8,6 +8,7 @@ import select
 import shutil
 import sys
 import termios
+import textwrap
 import threading
 import time
 import tty
@@ -15,7 +16,8 @@ from collections import deque
 from collections.abc import Iterable
 from types import TracebackType
 
-from epg.live.client import Client, Lost, Refused
+from epg.live.client import Client, Lost, Refused, words_of
+from epg.live.faults import Faults
 from epg.live.rows import Recording, Row
 
 PERIOD = 0.1
@@ -76,7 +78,7 @@ class Screen:
     come back only while this loop runs.
     """
 
-    def __init__(self, client: Client, names: list[str], values: Values, recording: Recording) -> None:
+    def __init__(self, client: Client, names: list[str], values: Values, recording: Recording, faults: Faults) -> None:
         self._client, self._names, self._values, self._recording = client, names, values, recording
         units = {signal.name: signal.unit for signal in client.description.signals}
         self._units = [units[name] for name in names]
@@ -84,6 +86,7 @@ class Screen:
         self._said: deque[str] = deque(maxlen=LINES)
         self._numbers: deque[int] = deque()
         self._state = ""
+        self._faults = faults
         self._stopping = False
         self.over = False
 
@@ -153,7 +156,9 @@ class Screen:
         columns, height = shutil.get_terminal_size()
         description = self._client.description
         width = max(map(len, self._names), default=0)
-        lines = [f"{description.name}  EPG {description.version}  {self._state}", ""]
+        fault = self._faults.explain(dict(words_of(self._state)))
+        lines = [f"{description.name}  EPG {description.version}  {self._state}"]
+        lines += [line for text in fault or () for line in textwrap.wrap(text, columns)] + [""]
         room = height - len(lines) - LINES - 4
         for index, name in enumerate(self._names[: max(room, 1)]):
             value = f"{self._values.newest[index]:>12.6g} {self._units[index]:<6}"

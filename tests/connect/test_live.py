@@ -150,7 +150,10 @@ def test_a_page_that_does_not_answer_ends_the_lease(page: Page, target: Target) 
     enabled(page, target)
     answering.clear()
     wait_until_disabled(page)
-    assert page.state()["live"]["target"]["state"]["fault"] == "operator"
+    found = page.state()["live"]["target"]
+    assert found["state"]["fault"] == "operator"
+    assert found["fault"]["text"].startswith("Fault 'operator': the program or page that had enabled the target does")
+    assert found["fault"]["remedy"].endswith("enable the target again.")
 
 
 def test_another_page_cannot_keep_the_lease(page: Page, target: Target) -> None:

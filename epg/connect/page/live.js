@@ -38,6 +38,7 @@ export function livePanel(state) {
   followTarget(target.signals, (all) => (all ? draw() : drawSoon()));
   return [
     headPart(target),
+    faultPart(target),
     problemPart(refused),
     signalsPart(target),
     h("div.plots", { key: "plots", keep: true, shown: (place) => drawNow(place, target) }),
@@ -105,7 +106,6 @@ function portsPart({ ports }) {
 
 function headPart(target) {
   const enabled = isEnabled(target);
-  const { fault } = target.state;
   return h(
     "div.live-head",
     { key: "head" },
@@ -115,7 +115,6 @@ function headPart(target) {
       { key: "state", class: enabled ? "live-enabled" : "", role: "status" },
       h("b", target.name),
       enabled ? " enabled" : " disabled",
-      fault !== "none" && h("span.failed-end", ` fault: ${fault.replaceAll("_", " ")}`),
       !target.matches && h("span.failed-end", " another firmware than that of the last build: it can only be watched"),
       live.dropped > 0 && h("span.hint", ` ${live.dropped} rows dropped`),
     ),
@@ -132,6 +131,11 @@ function headPart(target) {
     ),
   );
 }
+
+// The latched fault: its cause, and the next steps of the user.
+const faultPart = ({ fault }) =>
+  fault &&
+  h("p.failed-end", { key: "fault", role: "alert" }, icon("error"), h("b", fault.text), h("span.hint", fault.remedy));
 
 // Disables the target. It has a connection of its own, and is never behind other requests.
 function stop() {

@@ -122,6 +122,8 @@ interface LiveTarget {
   every: number;
   /** The words of the target about its state, such as enabled: "1". */
   state: Record<string, string>;
+  /** The latched fault in a sentence, and the next steps of the user. */
+  fault: { text: string; remedy: string } | null;
   signals: { name: string; unit: string }[];
   setpoints: string[];
   actuators: string[];

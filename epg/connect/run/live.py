@@ -16,7 +16,7 @@ import json
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +24,8 @@ from epg.connect.body import Refused
 from epg.connect.projects import Job
 from epg.live import client as protocol
 from epg.live.buckets import Bucket, Buckets
-from epg.live.client import Client, Lost
+from epg.live.client import Client, Lost, words_of
+from epg.live.faults import Faults
 from epg.live.found import ports
 from epg.live.port import Port, PortError
 from epg.live.rows import Recording, Stream
@@ -62,17 +63,17 @@ class Live:
         self._connected: _Connection | None = None
         self._problem: dict[str, str] | None = None
 
-    def connect(self, path: Path, expected: str, baud: int = 115200) -> None:
+    def connect(self, path: Path, expected: str, baud: int = 115200, roots: Sequence[Path] = ()) -> None:
         """Connects with the target behind ``path``.  ``expected`` is the hash of the firmware that was built; "": none.
 
-        Raises Refused.
+        ``roots`` are the folders of targets that describe its faults.  Raises Refused.
         """
         with self._lock:
             if self._connected is not None:
                 raise Refused("a target is connected", "disconnect it first", 409)
             self._problem = None
             try:
-                self._connected = _Connection(path, expected, baud, self._state_changed)
+                self._connected = _Connection(path, expected, baud, Faults(roots), self._state_changed)
             except PortError as problem:
                 raise Refused(str(problem), problem.hint, 409) from None
             except (Lost, protocol.Refused) as problem:
@@ -141,8 +142,8 @@ class Live:
 class _Connection:
     """An open port with its client, and the pages that listen."""
 
-    def __init__(self, path: Path, expected: str, baud: int, changed: Callable[[str], None]) -> None:
-        self._changed = changed
+    def __init__(self, path: Path, expected: str, baud: int, faults: Faults, changed: Callable[[str], None]) -> None:
+        self._changed, self._faults = changed, faults
         self._path, self._expected = path, expected
         self._owner = ""  # the page that has enabled the target
         self._state = "enabled=0"
@@ -176,6 +177,8 @@ class _Connection:
 
     def state(self) -> dict[str, Any]:
         found = self._client.description
+        state = dict(words_of(self._state))
+        fault = self._faults.explain(state)
         return {
             "path": str(self._path),
             "name": found.name,
@@ -184,7 +187,8 @@ class _Connection:
             "matches": self._matches,
             "period": found.period,
             "every": self._every,
-            "state": dict(word.partition("=")[::2] for word in self._state.split(" ")),
+            "state": state,
+            "fault": fault._asdict() if fault is not None else None,
             "signals": [{"name": signal.name, "unit": signal.unit} for signal in found.signals[: len(self._names)]],
             "setpoints": list(found.setpoints),
             "actuators": list(found.actuators),

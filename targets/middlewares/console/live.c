@@ -258,7 +258,6 @@ void epg_console_take_framed(epg_console_session_t *session, uint8_t byte)
         take_message(session);
         break;
     case EPG_CONSOLE_FRAME_DAMAGED:
-        session->live.damaged++;
         break;
     }
 }

@@ -30,7 +30,6 @@ typedef struct epg_console_live {
     epg_console_frame_t frame;
     uint64_t byte_ns;  /**< arrival of the last byte of an open frame */
     uint64_t heard_ns; /**< arrival of the last whole frame */
-    uint32_t damaged;  /**< number of damaged frames */
     uint8_t wait_tag;  /**< tag of the command that waits for an event */
     uint8_t list_tag;  /**< tag of the command whose answer has several lines */
     uint8_t jog_tag;   /**< tag of the last jog */
