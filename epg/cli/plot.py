@@ -15,6 +15,7 @@ from epg.source import Span
 if TYPE_CHECKING:
     from epg.ros.compare import Comparison
     from epg.ros.recording import Recording
+    from epg.simulate.picture import Mark
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -50,7 +51,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--until", type=float, default=math.inf, metavar="SECONDS", help="compare until this time")
     parser.add_argument(
-        "--output", type=Path, metavar="PNG", help="file to write; default: <name of RUN>.png in the current folder"
+        "--description",
+        type=Path,
+        metavar="JSON",
+        help="the description of the target, <build>/epg/<name>/<name>.json: gives the units",
+    )
+    parser.add_argument(
+        "--output",
+        type=Path,
+        metavar="FILE",
+        help="file to write, *.png or *.svg; default: <name of RUN>.png in the current folder",
     )
 
 
@@ -60,30 +70,87 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     bootstrap.ensure("plot")
     from epg.ros.recording import load_recording
 
+    output = options.output or Path(f"{options.run.resolve().stem}.png")
+    check_picture(output, diagnostics)
+    units = _units(options, diagnostics)
     recording = load_recording(options.run, diagnostics)
     other = load_recording(options.against, diagnostics) if options.against else None
     diagnostics.stop_if_errors()
     assert recording is not None
-    output = options.output or Path(f"{options.run.resolve().stem}.png")
     if other is None:
-        return _plot_one(recording, options, output, diagnostics)
-    return _compare(recording, other, options, output, diagnostics)
+        return _plot_one(recording, units, options, output, diagnostics)
+    return _compare(recording, other, units, options, output, diagnostics)
 
 
-def _plot_one(recording: Recording, options: argparse.Namespace, output: Path, diagnostics: Diagnostics) -> int:
+def check_picture(path: Path, diagnostics: Diagnostics) -> None:
+    """Reports the name of a picture that EPG cannot write."""
+    from epg.simulate.picture import PICTURES
+
+    if path.suffix not in PICTURES:
+        hint = f"the name must end in {' or '.join(PICTURES)}"
+        message = f"'{path.name}' is not the name of a picture that EPG can write"
+        diagnostics.error("picture-format", Span.of_argument(path.name, "--output"), message, hint=hint)
+
+
+def _units(options: argparse.Namespace, diagnostics: Diagnostics) -> dict[str, str]:
+    """The units of the signals, if the user has named a description."""
+    from epg.ros.panels import read_units
+
+    if options.description is None:
+        return {}
+    units = read_units(options.description)
+    if units is None:
+        hint = "the description is in the build folder: epg/<name>/<name>.json"
+        message = "this is not the description of a generated target"
+        diagnostics.error("not-a-description", Span(str(options.description)), message, hint=hint)
+    return units or {}
+
+
+def _plot_one(
+    recording: Recording, units: dict[str, str], options: argparse.Namespace, output: Path, diagnostics: Diagnostics
+) -> int:
     from epg.ros.compare_plot import plot_recording
+    from epg.ros.panels import panels_of
 
-    names = options.signal or list(recording.signals)
+    # The state and the times of a trace are marks, and no curves unless the user asks for them.
+    names = options.signal or [name for name in recording.signals if name not in _STATE] or list(recording.signals)
     for name in names:
         _check(name, recording, "--signal", diagnostics)
     diagnostics.stop_if_errors()
-    plot_recording(recording, names, output)
+    found = panels_of(names, recording.setpoints, units)
+    shown = plot_recording(recording, found, output, _title(options.run), _marks(recording))
+    _warn(shown, len(found), "panels", output, diagnostics)
     print(f"wrote {output}")
     return 0
 
 
+_STATE = ("enabled", "fault", "lateness", "computation")
+
+
+def _marks(recording: Recording) -> list[Mark]:
+    """The times at which the target was enabled, was disabled or had a fault, if the recording has them."""
+    from epg.simulate.marks import SIGNALS, state_marks
+
+    found = [recording.signals.get(name) for name in SIGNALS]
+    if found[0] is None or found[1] is None or len(found[0].time) != len(found[1].time):
+        return []
+    return state_marks({"time": found[0].time, "enabled": found[0].value, "fault": found[1].value})
+
+
+def _warn(shown: int, count: int, what: str, output: Path, diagnostics: Diagnostics) -> None:
+    if shown < count:
+        hint = "--signal chooses signals"
+        message = f"the plot shows the first {shown} of {count} {what}"
+        diagnostics.warning("too-much-to-plot", Span(str(output)), message, hint=hint)
+
+
 def _compare(
-    recording: Recording, other: Recording, options: argparse.Namespace, output: Path, diagnostics: Diagnostics
+    recording: Recording,
+    other: Recording,
+    units: dict[str, str],
+    options: argparse.Namespace,
+    output: Path,
+    diagnostics: Diagnostics,
 ) -> int:
     from epg.cli.report import to_json
     from epg.ros.compare import compare
@@ -99,7 +166,8 @@ def _compare(
             diagnostics.warning("no-overlap", Span(str(options.run)), message)
     if all(math.isnan(pair.rms) for pair in comparison.pairs):
         return 0
-    plot_comparison(comparison, _title(options.run), _title(options.against), output)
+    shown = plot_comparison(comparison, units, (_title(options.run), _title(options.against)), output, _marks(other))
+    _warn(shown, sum(not math.isnan(pair.rms) for pair in comparison.pairs), "signals", output, diagnostics)
     if options.json:
         data = [
             {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Plots a run: setpoint, reference and position of each axis over time, with the error below."""
+"""Plots a run.  For each axis: setpoint, reference and position over time, below them the error and the duty."""
 
 from __future__ import annotations
 
@@ -8,26 +8,49 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics
-from epg.simulate.tracking import Tracking
+from epg.simulate.picture import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    SMALL,
+    Axes,
+    Mark,
+    arrange,
+    legend,
+    panels,
+    save,
+    with_unit,
+)
+from epg.simulate.tracking import Tracking, WindowResult
 from epg.source import Span
-
-# M. Okabe, K. Ito, "Color Universal Design", 2008: users with any common colour vision can distinguish these colours
-BLACK, BLUE, ORANGE, GREY = "#000000", "#0072B2", "#D55E00", "#999999"
-
 
 GAP = 10.0
 """The number of control periods without a cycle from which on a line is broken: the target did not run."""
 
+_HEIGHTS = (2.6, 1.35)
+"""Inches: the panel with the position, the panel with the error."""
+_DUTY_HEIGHT = 0.85
+
+_NARROW = 0.11
+"""The part of the shown time from which on a window has room for its numbers."""
+
 
 def plot(
-    trackings: Sequence[Tracking], path: Path, diagnostics: Diagnostics, marks: Sequence[tuple[float, str]] = ()
+    trackings: Sequence[Tracking],
+    windows: Sequence[WindowResult],
+    path: Path,
+    diagnostics: Diagnostics,
+    marks: Sequence[Mark] = (),
 ) -> bool:
     """Writes the plot into ``path``.  Returns False, after a warning with a remedy, if matplotlib is not installed.
 
-    ``marks`` are times in s with a text, such as failures of targets.
+    ``windows`` are the results of the windows of all axes.  ``marks`` are events such as failures of targets.
     """
     try:
-        from matplotlib.figure import Figure  # not pyplot, which can use a window system and has global state
+        import matplotlib.figure  # noqa: F401  # a test that it is there
     except ImportError as error:
         diagnostics.warning(
             "matplotlib-missing",
@@ -36,19 +59,18 @@ def plot(
             hint="python3 -m pip install matplotlib, or on Debian and Ubuntu: apt install python3-matplotlib",
         )
         return False
-    count = len(trackings)
-    figure = Figure(figsize=(8.0, 3.7 * count), layout="constrained")
-    panels = figure.subplots(2 * count, 1, sharex=True, squeeze=False, gridspec_kw={"height_ratios": [3, 1] * count})
-    for number, tracking in enumerate(trackings):
-        _draw(tracking, panels[2 * number][0], panels[2 * number + 1][0])
-    for time, text in marks:
-        for panel in panels[:, 0]:
-            panel.axvline(time, color=ORANGE, linewidth=0.9, linestyle=":")
-        style = {"fontsize": "x-small", "rotation": 20.0, "color": ORANGE}
-        panels[0][0].annotate(text, (time, 1.02), xycoords=("data", "axes fraction"), **style)
-    panels[-1][0].set_xlabel("time (s)")
-    panels[-1][0].set_xlim(0.0, max((tracking.time[-1] for tracking in trackings if tracking.time), default=1.0))
-    figure.savefig(path, dpi=150, metadata={"Software": None})
+    heights = [*_HEIGHTS, *([_DUTY_HEIGHT] if any(tracking.duty is not None for tracking in trackings) else [])]
+    end = max((tracking.time[-1] for tracking in trackings if tracking.time), default=1.0) or 1.0
+    arrangement = arrange(len(trackings), sum(heights), 0.6 * sum(heights))
+    if arrangement.shown < len(trackings):
+        message = f"the plot shows the first {arrangement.shown} of {len(trackings)} axes"
+        diagnostics.warning("too-much-to-plot", Span(path.name), message, hint="'tracking.csv' has all of them")
+    figure, places = panels(arrangement, heights, sorted(marks), (0.0, end))
+    for tracking, found in zip(trackings, places):
+        own = [result for result in windows if result.axis == tracking.axis.name]
+        _draw(tracking, own, end, found)
+    figure.align_ylabels()
+    save(figure, path)
     return True
 
 
@@ -77,28 +99,81 @@ def _broken(tracking: Tracking) -> Tracking:
     )
 
 
-def _draw(tracking: Tracking, upper, lower) -> None:  # type: ignore[no-untyped-def]  # matplotlib brings no types
+def _draw(tracking: Tracking, windows: Sequence[WindowResult], end: float, found: Sequence[Axes]) -> None:
     axis, tracking = tracking.axis, _broken(tracking)
+    upper, lower = found[:2]
     begin = axis.homing.until if axis.homing else 0.0
-    shown = [i for i, time in enumerate(tracking.time) if time >= begin]
     if tracking.reference is not None:
         upper.plot(tracking.time, tracking.reference, color=ORANGE, linewidth=2.4, label="reference (ideal loop)")
     upper.plot(tracking.time, tracking.position, color=BLUE, linewidth=1.4, label="position")
     upper.plot(tracking.time, tracking.setpoint, color=BLACK, linestyle=(0, (4, 4)), linewidth=0.9, label="setpoint")
-    upper.set_ylabel(f"{axis.name} ({axis.unit})" if axis.unit else axis.name)
-    times = [tracking.time[i] for i in shown]
-    milli = 1000.0 if axis.unit in ("rad", "m") else 1.0
-    if tracking.reference is not None:
-        ideal = [milli * (tracking.reference[i] - tracking.setpoint[i]) for i in shown]
-        lower.plot(times, ideal, color=ORANGE, linewidth=1.8)
-    errors = [milli * (tracking.position[i] - tracking.setpoint[i]) for i in shown]
-    lower.plot(times, errors, color=BLUE, linewidth=0.9)
-    lower.set_ylabel(f"error ({'m' if milli > 1 else ''}{axis.unit})" if axis.unit else "error")
-    for panel in (upper, lower):
-        panel.grid(True, color=GREY, alpha=0.3, linewidth=0.6)
-        if begin > 0.0:
+    upper.set_ylabel(with_unit(axis.name, axis.unit))
+    if begin > 0.0:
+        for panel in found:
             label = "homing" if panel is upper else None
             panel.axvspan(0.0, begin, color=GREY, alpha=0.15, linewidth=0.0, label=label)
-    upper.legend(loc="upper right", fontsize="small", ncol=4)
-    low, high = upper.get_ylim()
-    upper.set_ylim(low, high + 0.22 * (high - low))  # room for the legend
+    milli = 1000.0 if axis.unit in ("rad", "m") else 1.0
+    shown = [i for i, time in enumerate(tracking.time) if time >= begin]
+    times = [tracking.time[i] for i in shown]
+    if tracking.reference is not None:
+        ideal = [milli * (tracking.setpoint[i] - tracking.reference[i]) for i in shown]
+        lower.plot(times, ideal, color=ORANGE, linewidth=1.8)
+    errors = [milli * (tracking.setpoint[i] - tracking.position[i]) for i in shown]
+    lower.plot(times, errors, color=BLUE, linewidth=0.9)
+    unit = f"{'m' if milli > 1 else ''}{axis.unit}" if axis.unit else ""
+    lower.set_ylabel(with_unit("error", unit))
+    _draw_windows(windows, milli, end, lower)
+    lower.set_title("error: setpoint - position", fontsize=SMALL, loc="left", pad=3.0)
+    if len(found) > 2:
+        duty = found[2]
+        if tracking.duty is None:
+            duty.set_yticks([])
+            duty.annotate(
+                "the scenario names no duty of this axis",
+                (0.01, 0.5),
+                xycoords="axes fraction",
+                va="center",
+                fontsize=SMALL,
+            )
+        else:
+            duty.plot(tracking.time, tracking.duty, color=BLUE, linewidth=0.9)
+            duty.set_ylabel("duty (1)")
+    legend(upper)
+
+
+def _draw_windows(windows: Sequence[WindowResult], milli: float, end: float, panel: Axes) -> None:
+    """The windows in which the error is evaluated: the limits, and the numbers if there is room for them."""
+    limits = [limit for one in windows for limit in (one.window.rms, one.window.largest) if limit is not None]
+    if not limits:
+        return
+    low, high = panel.get_ylim()
+    reach = 1.1 * max(-low, high, milli * max(limits))
+    panel.set_ylim(-reach, 2.1 * reach)  # room for the numbers
+    drawn: set[str] = set()
+    for one in windows:
+        window = one.window
+        held = all(
+            limit is None or value <= limit for value, limit in ((one.rms, window.rms), (one.largest, window.largest))
+        )
+        colour = GREEN if held else ORANGE
+        panel.axvspan(window.start, window.end, color=colour, alpha=0.1, linewidth=0.0)
+        for limit, name, style in (
+            (window.largest, "limit of the largest error", "-"),
+            (window.rms, "limit of the RMS", "--"),
+        ):
+            if limit is not None:
+                for sign in (1.0, -1.0):
+                    label = None if name in drawn else name
+                    drawn.add(name)
+                    ends = [window.start, window.end]
+                    panel.plot(
+                        ends, [sign * milli * limit] * 2, color=PURPLE, linestyle=style, linewidth=1.1, label=label
+                    )
+        if (window.end - window.start) / end > _NARROW:
+            wide = (window.end - window.start) / end > 2.0 * _NARROW
+            rms = ("" if held else "not held: ") + f"RMS {milli * one.rms:.3g}"
+            text = f"{rms},{' ' if wide else chr(10)}largest {milli * one.largest:.3g}"
+            at = (0.5 * (window.start + window.end), 1.05 * reach)
+            panel.annotate(text, at, ha="center", va="bottom", fontsize=SMALL, color=BLACK if held else ORANGE)
+    handles, labels = panel.get_legend_handles_labels()
+    panel.legend(handles, labels, loc="lower right", bbox_to_anchor=(1.0, 0.98), fontsize=SMALL, ncol=2, frameon=False)

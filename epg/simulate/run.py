@@ -12,6 +12,7 @@ from epg.simulate.executable import fail, read_statistics, read_trace, run_execu
 from epg.simulate.interface import check_names, read_interface
 from epg.simulate.judge import judge
 from epg.simulate.load_scenario import load_scenario
+from epg.simulate.marks import SIGNALS, state_marks
 from epg.simulate.plot import plot
 from epg.simulate.reference import load_reference
 from epg.simulate.result import Result
@@ -55,11 +56,11 @@ def simulate(
 
     write_setpoints(setpoint_rows(read, realtime=realtime), files[0])
     run_executable(executable, output, float(read.duration), files[0], realtime=realtime, progress=progress)
-    columns = read_trace(output / "trace.csv", ["enabled", *read.signals])
+    columns = read_trace(output / "trace.csv", [*SIGNALS, *read.signals])
     progress("evaluating")
     judged = judge(read, columns, reference)
     write_tracking(judged.trackings, output / "tracking.csv")
-    if not plot(judged.trackings, output / "tracking.png", diagnostics):
+    if not plot(judged.trackings, judged.windows, output / "tracking.png", diagnostics, state_marks(columns)):
         files.pop()
     statistics = read_statistics(output / "statistics.json")
     return Result(

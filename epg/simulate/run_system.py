@@ -18,6 +18,8 @@ from epg.simulate.executable import read_trace, run_program
 from epg.simulate.interface import Interface, check_names, read_interface
 from epg.simulate.judge import judge
 from epg.simulate.load_scenario import load_scenario
+from epg.simulate.marks import SIGNALS, state_marks
+from epg.simulate.picture import Mark
 from epg.simulate.plot import plot
 from epg.simulate.reference import load_reference
 from epg.simulate.scenario import FAILURES, Scenario
@@ -114,7 +116,8 @@ def simulate_system(
     progress("evaluating")
     judged = judge(read, columns, reference)
     write_tracking(judged.trackings, output / "tracking.csv")
-    if not plot(judged.trackings, output / "tracking.png", diagnostics, _failures(read)):
+    marks = [*_failures(read), *(mark for target in targets for mark in _states(columns, target))]
+    if not plot(judged.trackings, judged.windows, output / "tracking.png", diagnostics, marks):
         files.pop()
     found = json.loads((output / "statistics.json").read_text(encoding="utf-8"))
     states = {name: TargetState(**state) for name, state in found["targets"].items()}
@@ -159,7 +162,7 @@ def _read_traces(scenario: Scenario, targets: Sequence[str], folder: Path) -> di
     columns: dict[str, array[float]] = {}
     for target in targets:
         own = [signal.partition("/")[2] for signal in scenario.signals if signal.partition("/")[0] == target]
-        read = read_trace(folder / f"{target}.csv", ["enabled", *own])
+        read = read_trace(folder / f"{target}.csv", [*SIGNALS, *own])
         columns |= {f"{target}/{name}": values for name, values in read.items()}
     own = [signal.removeprefix(_PLANT) for signal in scenario.signals if signal.startswith(_PLANT)]
     if own:  # of the system's plant
@@ -168,9 +171,15 @@ def _read_traces(scenario: Scenario, targets: Sequence[str], folder: Path) -> di
     return columns
 
 
-def _failures(scenario: Scenario) -> list[tuple[float, str]]:
-    """The failures of the scenario as marks of the plot: the time and a text."""
-    return [(float(event.at), f"{event.target}: {event.kind}") for event in scenario.events if event.kind in FAILURES]
+def _failures(scenario: Scenario) -> list[Mark]:
+    """The failures of the scenario as marks of the plot."""
+    failures = [event for event in scenario.events if event.kind in FAILURES]
+    return [Mark(float(event.at), f"{event.target}: {event.kind}") for event in failures]
+
+
+def _states(columns: Mapping[str, Sequence[float]], target: str) -> list[Mark]:
+    """The marks of one target: when it was enabled, was disabled or had a fault."""
+    return state_marks({name: columns[f"{target}/{name}"] for name in ("time", *SIGNALS)}, target)
 
 
 def _ending(scenario: Scenario, target: str, enabled: Sequence[float], state: TargetState) -> Ending:

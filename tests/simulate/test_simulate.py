@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import builtins
 import csv
+import re
 import stat
 import sys
 from pathlib import Path
@@ -19,6 +20,7 @@ from epg.simulate import interface as interface_module
 
 from .motor import compile_motor
 
+REPOSITORY = Path(__file__).resolve().parents[2]
 PROFILE = "setpoints: {motor_setpoint: {profile: [{shape: move, start: 0.5 s, duration: 1 s, to: 2 rad}]}}\n"
 AXIS = "axes: {motor: {setpoint: motor_setpoint, position: inputs.position, duty: outputs.duty%s}}\n"
 REFERENCE = "def reference(axis, time, setpoint):\n    return [0.0 for _ in time]\n"
@@ -322,3 +324,45 @@ def test_the_plot_is_drawn(motor: Path, tmp_path: Path) -> None:
     assert plot in result.files
     assert plot.read_bytes().startswith(b"\x89PNG")
     assert plot.stat().st_size > 20_000
+
+
+def test_the_plot_shows_the_state_of_the_target(motor: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("matplotlib")
+    from matplotlib.figure import Figure
+
+    texts: list[str] = []
+
+    def keep(figure: Figure, *_: object, **__: object) -> None:
+        for panel in figure.axes:
+            texts.extend([panel.get_ylabel(), panel.get_title(loc="left"), *(text.get_text() for text in panel.texts)])
+            texts.extend(text.get_text() for text in (panel.get_legend().get_texts() if panel.get_legend() else ()))
+
+    monkeypatch.setattr(Figure, "savefig", keep)
+    window = ", windows: [{from: 0.2 s, until: 0.8 s, rms: 1e-9 rad, largest: 10 rad}]"
+    simulate(motor, scenario(tmp_path, "events: [{at: 0.9 s, enable: false}]\n", axis=window), tmp_path / "out")
+    for expected in (
+        "disabled",
+        "error: setpoint - position",
+        "duty (1)",
+        "limit of the RMS",
+        "limit of the largest error",
+    ):
+        assert expected in texts, texts
+    assert any(text.startswith("not held: RMS") for text in texts)
+
+
+def test_the_names_of_faults_are_those_of_the_runtime() -> None:
+    from epg.simulate.marks import FAULTS
+
+    header = (REPOSITORY / "targets/runtime/include/epg/fault.h").read_text(encoding="utf-8")
+    names = (REPOSITORY / "targets/runtime/src/communication/fault.c").read_text(encoding="utf-8")
+    known, number = {}, -1
+    for name, given in re.findall(r"^    EPG_FAULT_(\w+)(?: = (\w+))?,", header, re.MULTILINE):
+        number = int(given, 0) if given else number + 1
+        found = re.search(rf'EPG_FAULT_{name}\] = "(.*?)"', names)
+        assert found, name
+        known[number] = found[1]
+    for kind in sorted((REPOSITORY / "targets/components").glob("*/component.yaml")):
+        text = kind.read_text(encoding="utf-8")
+        known |= {int(n): name for name, n in re.findall(r"^  ([\w -]+): \{number: (\d+),", text, re.MULTILINE)}
+    assert dict(sorted(known.items())) == {0: "none", **FAULTS}
