@@ -249,6 +249,11 @@ class _Handler(BaseHTTPRequestHandler):
             self._json(owner.session.move(query.get("configuration", "")))
         elif path == "api/live/events":
             self._events()
+        elif path == "api/live/capture":
+            self._json(owner.session.live.recorded())
+        elif path == "api/live/save":
+            data = owner.session.live.save(query.get("what", ""), query.get("as", ""))
+            self._send(200, "application/octet-stream", data)
         elif path == "api/source":
             self._json(owner.session.source(query.get("file", ""), _integer(query, "line", 1)))
         elif path == "api/pins":

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import contextlib
 import http.client
+import io
 import json
 import socket
 import threading
@@ -193,3 +194,59 @@ def test_an_end_of_the_target_is_told(page: Page, target: Target) -> None:
     target.process.kill()
     state = page.until(lambda state: state["live"]["target"] is None, 5)
     assert "is gone" in state["live"]["problem"]["message"]
+
+
+# Saving and recording
+
+
+def rows_of(text: bytes) -> tuple[list[str], list[list[float]]]:
+    header, *rows = text.decode().splitlines()
+    return header.split(","), [[float(value) for value in row.split(",")] for row in rows]
+
+
+def test_the_streamed_rows_are_saved(page: Page, target: Target) -> None:
+    found = connect(page, target)
+    page.post("live/command", line="pan_subscriber=0.5")
+    time.sleep(1.5)
+    header, rows = rows_of(page.get("api/live/save?what=stream&as=csv")[0])
+    assert header == ["time", *(signal["name"] for signal in found["signals"])]
+    assert len(rows) >= 1000
+    times = [row[0] for row in rows]
+    assert times[0] == 0.0
+    assert times == pytest.approx([number * 0.001 for number in range(len(times))]), "no gap"
+    setpoints = {row[header.index("inputs.setpoint_pan")] for row in rows}
+    assert setpoints == {0.0, 0.5}
+
+    from mcap.reader import make_reader
+
+    reader = make_reader(io.BytesIO(page.get("api/live/save?what=stream&as=mcap")[0]))
+    messages = [json.loads(message.data) for _, _, message in reader.iter_messages()]
+    assert len(messages) >= len(rows)
+    assert messages[len(rows) - 1]["inputs.setpoint_pan"] == 0.5
+    for address in ("what=stream&as=png", "what=all&as=csv", "what=capture&as=csv"):
+        with pytest.raises(Denied):
+            page.get(f"api/live/save?{address}")
+
+
+def test_every_cycle_around_a_trigger_is_recorded(page: Page, target: Target) -> None:
+    connect(page, target)
+    line = "capture setpoint_pan outputs.pwm_pan rows=200 before=50 when=setpoint_pan>0.4"
+    assert page.post("live/command", line=line)["answer"] == ["ok capture rows=200"]
+    time.sleep(0.5)
+    waiting = page.state()["live"]["target"]["capture"]
+    assert (waiting["state"], waiting["rows"], waiting["wanted"]) == ("recording", 200, 200)
+    page.post("live/command", line="pan_subscriber=0.5")
+    page.until(lambda state: state["live"]["target"]["capture"]["state"] == "ready", 5)
+    found = page.json("api/live/capture")
+    assert (found["names"], found["triggered"]) == (["inputs.setpoint_pan", "outputs.pwm_pan"], True)
+    assert found["times"] == pytest.approx([number * 0.001 for number in range(-50, 150)])
+    assert found["columns"][0] == [0.0] * 50 + [0.5] * 150
+    header, rows = rows_of(page.get("api/live/save?what=capture&as=csv")[0])
+    assert header == ["time", *found["names"]]
+    assert [row[2] for row in rows] == pytest.approx(found["columns"][1])
+
+    # A recording whose trigger does not happen can be ended.
+    page.post("live/command", line="capture setpoint_pan rows=100 when=fault")
+    page.post("live/command", line="capture stop")
+    page.until(lambda state: state["live"]["target"]["capture"]["number"] == 2, 5)
+    assert page.json("api/live/capture")["triggered"] is False

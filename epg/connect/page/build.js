@@ -15,7 +15,8 @@ import {
 import { h } from "./dom.js";
 import { flashButton, flashPart } from "./flash.js";
 import { isError } from "./problems.js";
-import { current, getPicture } from "./server.js";
+import { saveFrom } from "./save.js";
+import { current } from "./server.js";
 import { attempt, change, openTab } from "./ui.js";
 
 export function generate() {
@@ -88,15 +89,10 @@ function product(state, { path, what, runs }) {
   );
 }
 
-// Saves a product on the computer of the browser, which can be another one. A link cannot send the page's secret.
+// Saves a product on the computer of the browser.
 async function download(path, name) {
   try {
-    const address = await getPicture(`api/product?path=${encodeURIComponent(path)}`);
-    const link = document.createElement("a");
-    link.href = address;
-    link.download = name;
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(address), 60_000);
+    await saveFrom(`api/product?path=${encodeURIComponent(path)}`, name);
   } catch {
     change({ refused: { message: `${name} cannot be read.`, hint: "Generate again.", port: null } });
   }

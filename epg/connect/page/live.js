@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // "Live": a running target. Plots of its signals, its parameters, and the buttons that enable, move and stop it.
 
+import { swatch } from "./curves.js";
 import { h, id } from "./dom.js";
 import { icon } from "./icons.js";
 import { followTarget, live, page, tell } from "./live_events.js";
+import { drawValues, value } from "./live_values.js";
 import { colour, drawPlots } from "./plots.js";
 import { held, repeated } from "./press.js";
+import { recordingPart } from "./recording.js";
+import { saveFrom, savePng } from "./save.js";
 import { ask, current } from "./server.js";
 import { attempt, draw, say, ui } from "./ui.js";
 
@@ -35,13 +39,13 @@ async function request(action, body) {
 export function livePanel(state) {
   const { target } = state.live;
   if (!target) return [problemPart(state.live.problem), problemPart(refused), portsPart(state.live)];
-  followTarget(target.signals, (all) => (all ? draw() : drawSoon()));
   return [
     headPart(target),
     faultPart(target),
     problemPart(refused),
     signalsPart(target),
-    h("div.plots", { key: "plots", keep: true, shown: (place) => drawNow(place, target) }),
+    h("div.plots", { key: "plots", keep: true, shown: (place) => drawPlotsNow(place, target) }),
+    savePart(target),
     h(
       "div.live-columns",
       { key: "columns" },
@@ -50,6 +54,7 @@ export function livePanel(state) {
       actuatorsPart(target),
       linesPart(),
     ),
+    recordingPart(target, shownSignals(target), command),
   ];
 }
 
@@ -162,7 +167,6 @@ function shownSignals(target) {
 
 function signalsPart(target) {
   const shown = shownSignals(target);
-  const newest = (index) => live.highs[index]?.at(-1) ?? null;
   return h(
     "fieldset.live-signals",
     { key: "signals" },
@@ -180,19 +184,57 @@ function signalsPart(target) {
             draw();
           },
         }),
-        h(
-          "svg",
-          { class: "swatch", viewBox: "0 0 10 10", "aria-hidden": "true" },
-          h("rect", { width: "10", height: "10", fill: colour(index) }),
-        ),
+        swatch(colour(index)),
         ` ${each.name} `,
-        h("span.value", { id: id("live", String(index)) }, number(newest(index)), each.unit && ` ${each.unit}`),
+        value(index, each.unit),
       ),
     ),
   );
 }
 
-const number = (value) => (value === null ? "–" : String(Number(value.toPrecision(5))));
+function savePart(target) {
+  if (!target.every) {
+    const text = "This target has no memory for streams and recordings: see 'capture' in the settings of its .tcf.";
+    return h("p.hint", { key: "save" }, text);
+  }
+  const shown = shownSignals(target).map((index) => ({ name: target.signals[index].name, colour: colour(index) }));
+  const save = async (form) => {
+    try {
+      refused = null;
+      await saveFrom(`api/live/save?what=stream&as=${form}`, `${target.name}.${form}`);
+    } catch (error) {
+      refused = JSON.parse(/** @type {Error} */ (error).message).error;
+    }
+    draw();
+  };
+  return h(
+    "p.live-save",
+    { key: "save" },
+    h("button", { onclick: () => save("csv"), title: "All signals, as far back as EPG keeps them" }, "Save as CSV"),
+    h("button", { onclick: () => save("mcap"), title: "For PlotJuggler and Foxglove" }, "Save as MCAP"),
+    h(
+      "button",
+      {
+        title: "The plots",
+        disabled: !shown.length,
+        onclick: () => savePng(document.querySelector(".plots"), shown, `${target.name}.png`),
+      },
+      "Save as PNG",
+    ),
+  );
+}
+
+// Reads the events of the target, if one is connected. Must be called with every new state.
+/** @param {State} state */
+export function followLive(state) {
+  const target = state.live?.target;
+  if (target) followTarget(target.signals, (all) => (all ? again() : drawSoon()));
+}
+
+function again() {
+  if (current()) followLive(current());
+  draw();
+}
 
 function drawSoon() {
   if (drawing || document.hidden) return;
@@ -201,18 +243,14 @@ function drawSoon() {
     drawing = false;
     const place = /** @type {HTMLElement | null} */ (document.querySelector(".plots"));
     const target = current()?.live?.target;
-    if (place && target) drawNow(place, target);
+    if (!target) return;
+    drawValues();
+    if (place) drawPlotsNow(place, target);
   });
 }
 
-function drawNow(place, target) {
-  if (!live.times.length || !place.clientWidth) return;
-  drawPlots(place, target.signals, shownSignals(target));
-  target.signals.forEach((each, index) => {
-    const value = document.getElementById(id("live", String(index)));
-    const text = `${number(live.highs[index]?.at(-1) ?? null)}${each.unit ? ` ${each.unit}` : ""}`;
-    if (value && value.textContent !== text) value.textContent = text;
-  });
+function drawPlotsNow(place, target) {
+  if (live.times.length && place.clientWidth) drawPlots(place, target.signals, shownSignals(target));
 }
 
 // Setpoints, parameters, actuators, lines

@@ -17,6 +17,7 @@ import { flashOutcome } from "./flash.js";
 import { drawStops, isKnown, listenForPresses } from "./handles.js";
 import { header } from "./header.js";
 import { modelHead, modelPorts } from "./ports.js";
+import { followLive } from "./live.js";
 import { current, follow, hasEnded } from "./server.js";
 import { simulationOutcome } from "./simulation.js";
 import { startPage } from "./start.js";
@@ -112,6 +113,9 @@ listenForDrags(part("main"));
 listenForPresses(part("main"));
 const OUTCOMES = { build: buildOutcome, simulation: simulationOutcome, program: programOutcome, flash: flashOutcome };
 follow(() => {
-  if (current() && !hasEnded()) followActivities(current(), OUTCOMES);
+  if (current() && !hasEnded()) {
+    followActivities(current(), OUTCOMES);
+    followLive(current());
+  }
   draw();
 });

@@ -33,29 +33,41 @@ function drawPlot(place, unit, signals, indices) {
     known.plot.destroy();
     plots.delete(unit);
   }
-  if (!plots.has(unit)) plots.set(unit, { plot: newPlot(place, unit, signals, indices), names });
+  if (!plots.has(unit)) plots.set(unit, { plot: bands(place, unit, signals, indices), names });
   const { plot } = plots.get(unit);
-  if (plot.width !== place.clientWidth) plot.setSize({ width: place.clientWidth, height: HEIGHT });
+  drawnAs(plot, place.clientWidth);
   plot.setData([live.times, ...indices.flatMap((index) => [live.highs[index], live.lows[index]])]);
 }
 
-function newPlot(place, unit, signals, indices) {
+// Draws a plot again if its place has another width now.
+export function drawnAs(plot, width) {
+  if (plot.width !== width) plot.setSize({ width, height: HEIGHT });
+}
+
+function bands(place, unit, signals, indices) {
+  const series = indices.flatMap((index) =>
+    ["", ", least"].map((end) => ({ label: `${signals[index].name}${end}`, stroke: colour(index) })),
+  );
+  return newPlot(place, unit, series, {
+    scales: { x: { time: false, range: (_, min, max) => [Math.max(min, max - WINDOW), Math.max(max, min + 1)] } },
+    bands: indices.map((index, place) => ({ series: [1 + 2 * place, 2 + 2 * place], fill: `${colour(index)}40` })),
+  });
+}
+
+// A plot of values of one unit over the time. `series` and `more` are options of uPlot.
+export function newPlot(place, unit, series, more) {
   const style = getComputedStyle(document.documentElement);
   const text = style.getPropertyValue("--muted").trim();
   const axis = { stroke: text, grid: { stroke: style.getPropertyValue("--line").trim() } };
-  const line = (index, label) => ({ label, stroke: colour(index), width: 1.5, points: { show: false } });
   const options = {
     width: place.clientWidth,
     height: HEIGHT,
     legend: { show: false },
     cursor: { show: false },
-    scales: { x: { time: false, range: (_, min, max) => [Math.max(min, max - WINDOW), Math.max(max, min + 1)] } },
+    scales: { x: { time: false } },
     axes: [axis, { ...axis, label: unit, labelSize: unit ? 20 : 0, size: 60 }],
-    series: [
-      {},
-      ...indices.flatMap((index) => [line(index, signals[index].name), line(index, `${signals[index].name}, least`)]),
-    ],
-    bands: indices.map((index, place) => ({ series: [1 + 2 * place, 2 + 2 * place], fill: `${colour(index)}40` })),
+    series: [{}, ...series.map((each) => ({ width: 1.5, points: { show: false }, ...each }))],
+    ...more,
   };
   return new uPlot(options, [[]], place);
 }

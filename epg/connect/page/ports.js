@@ -8,6 +8,7 @@ import { icon } from "./icons.js";
 import { inline, isError } from "./problems.js";
 import { current } from "./server.js";
 import { attempt, change, say, ui } from "./ui.js";
+import { portValue } from "./live_values.js";
 import { disconnect, endsOf, fits, isUnconnected, replaceEnd, setEnds, unitMark } from "./wiring.js";
 
 /** @param {State} state */
@@ -107,6 +108,7 @@ function row(state, side, port, diagnostics) {
         name,
       ),
       unitMark(port),
+      portValue(state, side, name),
     ),
     name in state.by_system
       ? h("p.muted", { key: "system" }, "By the system: topic ", h("code", state.by_system[name]))

@@ -125,6 +125,8 @@ interface LiveTarget {
   /** The latched fault in a sentence, and the next steps of the user. */
   fault: { text: string; remedy: string } | null;
   signals: { name: string; unit: string }[];
+  /** The recording of every cycle; `number` counts those that can be read. */
+  capture: { state: "none" | "recording" | "ready"; rows: number; wanted: number; number: number };
   setpoints: string[];
   actuators: string[];
   parameters: LiveParameter[];

@@ -13,6 +13,8 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
+import tempfile
 import threading
 import time
 from collections import deque
@@ -20,15 +22,18 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from epg import bootstrap
 from epg.connect.body import Refused
 from epg.connect.projects import Job
 from epg.live import client as protocol
 from epg.live.buckets import Bucket, Buckets
+from epg.live.capture import Recorded, progress_of, recorded_of
 from epg.live.client import Client, Lost, words_of
 from epg.live.faults import Faults
 from epg.live.found import ports
+from epg.live.history import History
 from epg.live.port import Port, PortError
-from epg.live.rows import Recording, Stream
+from epg.live.rows import CsvFile, McapFile, Recording, Sink, Stream
 
 PERIOD = 0.05
 """Seconds between two events with points."""
@@ -36,6 +41,8 @@ WIDTH = 0.01
 """Seconds of a point."""
 MOST = 32
 """The largest number of signals in a stream."""
+ASK = 0.3
+"""Seconds between two looks at the progress of a recording."""
 KEPT = 1000
 """Points that wait for a page that reads slowly; older ones are left out."""
 READING = ("get", "stats", "ports", "version", "help", "disable")
@@ -115,6 +122,20 @@ class Live:
         """The events of the connection, until it ends.  Raises Refused if there is none."""
         return self._now().events()
 
+    def save(self, what: str, form: str) -> bytes:
+        """A file with the newest rows (``what`` is "stream") or with the last recording ("capture").
+
+        ``form`` is "csv" or "mcap".  Raises Refused.
+        """
+        connected = self._now()
+        if what not in ("stream", "capture") or form not in ("csv", "mcap"):
+            raise Refused(f"there is no file '{what}.{form}'", status=404)
+        return connected.save(what, form)
+
+    def recorded(self) -> dict[str, Any]:
+        """The last recording of every cycle: names, times, and the values of each signal.  Raises Refused."""
+        return self._now().recorded()
+
     def state(self, program: str) -> dict[str, Any]:
         """The connection for the page's state.  ``program`` is the terminal of a program that runs, or empty."""
         connected = self._connected
@@ -149,6 +170,9 @@ class _Connection:
         self._state = "enabled=0"
         self._listeners: list[_Listener] = []
         self._over = threading.Event()
+        self._capture: dict[str, Any] = {"state": "none", "rows": 0, "wanted": 0, "number": 0}
+        self._recorded: Recorded | None = None
+        self._follower: threading.Thread | None = None
         self._port = Port(path, baud)
         try:
             self._client = Client(self._port, self._told, self._numbered)
@@ -160,7 +184,8 @@ class _Connection:
             self._parameters = self._client.description.parameters
             self._names = [signal.name for signal in self._client.description.signals][:MOST]
             self._buckets = Buckets(len(self._names), WIDTH)
-            self._recording = Recording(Stream(self._names), [self._buckets])
+            self._history = History(len(self._names))
+            self._recording = Recording(Stream(self._names), [self._buckets, self._history])
             self._every = 0
             if self._names:
                 with contextlib.suppress(protocol.Refused):  # a target without memory for streams
@@ -190,6 +215,7 @@ class _Connection:
             "state": state,
             "fault": fault._asdict() if fault is not None else None,
             "signals": [{"name": signal.name, "unit": signal.unit} for signal in found.signals[: len(self._names)]],
+            "capture": dict(self._capture),
             "setpoints": list(found.setpoints),
             "actuators": list(found.actuators),
             "parameters": [
@@ -211,6 +237,12 @@ class _Connection:
             answer = self._client.command(line)
             if line.startswith("set "):
                 self._parameters = self._client.parameters()
+                self._changed("")
+            wanted = dict(words_of(answer[-1])).get("rows") if line.startswith("capture ") else None
+            if wanted is not None and (self._follower is None or not self._follower.is_alive()):
+                self._capture |= {"state": "recording", "rows": 0, "wanted": int(wanted)}
+                self._follower = threading.Thread(target=self._follow_capture, name="capture", daemon=True)
+                self._follower.start()
                 self._changed("")
             return answer
         except protocol.Refused as refusal:
@@ -250,10 +282,62 @@ class _Connection:
         finally:
             self._listeners.remove(listener)
 
+    def save(self, what: str, form: str) -> bytes:
+        if what == "capture":
+            recorded = self._last_recorded()
+            names, rows, begin = recorded.names, iter(recorded.rows), time.time_ns()
+        else:
+            names, rows, begin = tuple(self._names), self._history.rows(), self._history.begin
+        if form == "mcap":
+            try:
+                bootstrap.ensure("mcap")
+            except bootstrap.MissingPackages as problem:
+                raise Refused("a package for MCAP files is missing", str(problem), 409) from None
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "rows"
+            topic = f"/{self._client.description.node or 'target'}"
+            sink: Sink = CsvFile(path, names) if form == "csv" else McapFile(path, names, topic, begin)
+            sink.write(rows)
+            sink.close()
+            return path.read_bytes()
+
+    def recorded(self) -> dict[str, Any]:
+        recorded = self._last_recorded()
+        columns = zip(*(row.values for row in recorded.rows), strict=True)
+        return {
+            "names": recorded.names,
+            "times": [row.time for row in recorded.rows],
+            "columns": [[value if math.isfinite(value) else None for value in column] for column in columns],
+            "triggered": recorded.triggered,
+        }
+
     def close(self) -> None:
         self._over.set()
         self._client.stop()
         self._port.close()
+
+    def _last_recorded(self) -> Recorded:
+        recorded = self._recorded
+        if recorded is None:
+            raise Refused("nothing has been recorded", "start a recording first", 409)
+        return recorded
+
+    def _follow_capture(self) -> None:
+        """Shows the progress of a recording, and reads it when it is complete."""
+        with contextlib.suppress(Lost):
+            while not self._over.is_set():
+                progress = progress_of(self._client.command("capture")[-1])
+                if not progress.recording:
+                    with contextlib.suppress(protocol.Refused):  # another one has begun
+                        self._recorded = recorded_of(self._client.command("capture read"), progress.trigger)
+                        number = self._capture["number"] + 1
+                        self._capture |= {"state": "ready", "rows": progress.rows, "number": number}
+                        break
+                elif progress.rows != self._capture["rows"]:
+                    self._capture["rows"] = progress.rows
+                    self._changed("")
+                self._over.wait(ASK)
+            self._changed("")
 
     def _check(self, command: str) -> None:
         if not self._matches and command not in READING:

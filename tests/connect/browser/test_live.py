@@ -6,6 +6,7 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -76,6 +77,40 @@ def test_a_robot_is_tuned_and_stopped_by_the_space_bar(jiwy: Any, page: Any) -> 
     page.wait_for_timeout(300)
     wide = page.evaluate("document.documentElement.scrollWidth")
     assert wide <= 400, f"the page is {wide} px wide"
+
+
+def saved(page: Any, part: str, button: str) -> bytes:
+    """The file that a button saves."""
+    with page.expect_download() as download:
+        page.locator(part).get_by_role("button", name=button).click()
+    return Path(download.value.path()).read_bytes()
+
+
+def test_a_step_is_recorded_and_saved(page: Any) -> None:
+    page.get_by_label("Trigger").select_option("signal rises to")
+    page.get_by_label("Signal", exact=True).select_option("inputs.setpoint_pan")
+    for label, text in (("Level", "0.4"), ("Rows before it", "50"), ("Rows", "400")):
+        page.get_by_label(label, exact=True).fill(text)
+    page.get_by_role("button", name="Record", exact=True).click()
+    page.get_by_text("Waiting for the trigger").wait_for()
+    assert violations(page) == []
+    page.get_by_role("textbox", name="pan_subscriber").fill("0.5")
+    page.get_by_role("textbox", name="pan_subscriber").press("Enter")
+    page.get_by_role("img", name="Recording of inputs.position_pan").wait_for()
+    assert page.get_by_text("400 rows. The trigger is at 0 s.").is_visible()
+
+    # The port of the drawing shows the value.
+    page.get_by_role("button", name="Smaller").click()
+    port = page.locator(".port", has=page.get_by_text("setpoint_pan", exact=True))
+    assert port.locator(".value").inner_text() == "0.5"
+
+    assert saved(page, ".recorded", "Save as CSV").startswith(b"time,inputs.position_pan,")
+    assert saved(page, ".live-save", "Save as CSV").startswith(b"time,inputs.position_pan,")
+    for part in (".recorded", ".live-save"):
+        picture = saved(page, part, "Save as PNG")
+        assert picture.startswith(b"\x89PNG")
+        assert len(picture) > 5000, "there are curves"
+    assert violations(page) == []
 
 
 def test_an_actuator_moves_while_its_button_is_held(page: Any) -> None:

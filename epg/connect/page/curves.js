@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Curves that do not move: a recording around a trigger, a comparison. Each unit has a plot.
+
+import { h } from "./dom.js";
+import { drawnAs, newPlot } from "./plots.js";
+
+/**
+ * @typedef {{name: string, unit: string, colour: string, dashed?: boolean, values: (number | null)[]}} Curve
+ * @typedef {{times: number[], mark: boolean, curves: Curve[]}} Curves  `mark` draws a line at the time 0
+ */
+
+/** @type {WeakMap<Element, {shown: Curves, plots: any[]}>} */
+const drawn = new WeakMap();
+
+/**
+ * Draws curves into `place`.
+ * @param {HTMLElement} place
+ * @param {Curves} shown
+ */
+export function drawCurves(place, shown) {
+  if (!place.clientWidth) return;
+  const known = drawn.get(place);
+  if (known?.shown === shown) {
+    for (const plot of known.plots) drawnAs(plot, place.clientWidth);
+    return;
+  }
+  for (const plot of known?.plots ?? []) plot.destroy();
+  const units = [...new Set(shown.curves.map((each) => each.unit))];
+  drawn.set(place, { shown, plots: units.map((unit) => plotOf(place, unit, shown)) });
+}
+
+/** @param {Curves} shown */
+function plotOf(place, unit, shown) {
+  const { times, mark, curves } = shown;
+  const found = curves.filter((each) => each.unit === unit);
+  const plot = newPlot(
+    place,
+    unit,
+    found.map(({ name, colour, dashed }) => ({ label: name, stroke: colour, ...(dashed ? { dash: [6, 4] } : {}) })),
+    { hooks: mark ? { draw: [drawMark] } : {} },
+  );
+  plot.setData([times, ...found.map((each) => each.values)]);
+  return plot;
+}
+
+function drawMark(plot) {
+  const x = Math.round(plot.valToPos(0, "x", true));
+  const { ctx, bbox } = plot;
+  ctx.save();
+  ctx.strokeStyle = getComputedStyle(document.documentElement).getPropertyValue("--error");
+  ctx.lineWidth = 2;
+  ctx.beginPath();
+  ctx.moveTo(x, bbox.top);
+  ctx.lineTo(x, bbox.top + bbox.height);
+  ctx.stroke();
+  ctx.restore();
+}
+
+/**
+ * The names of curves with their colours.
+ * @param {Curve[]} curves
+ */
+export const legend = (curves) =>
+  h(
+    "ul.legend",
+    curves.map(({ name, colour, dashed }) => h("li", { key: name }, swatch(colour, dashed), ` ${name}`)),
+  );
+
+export const swatch = (colour, dashed = false) =>
+  h(
+    "svg",
+    { class: "swatch", viewBox: "0 0 10 10", "aria-hidden": "true" },
+    dashed
+      ? [0, 6].map((x) => h("rect", { key: String(x), x, y: "3", width: "4", height: "4", fill: colour }))
+      : h("rect", { width: "10", height: "10", fill: colour }),
+  );
