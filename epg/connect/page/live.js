@@ -11,6 +11,7 @@ import { held, repeated } from "./press.js";
 import { recordingPart } from "./recording.js";
 import { saveFrom, savePng } from "./save.js";
 import { ask, current } from "./server.js";
+import { timingPart } from "./timing.js";
 import { attempt, draw, say, ui } from "./ui.js";
 
 const HOLD = 500; // ms that the button for enabling must be pressed
@@ -55,6 +56,7 @@ export function livePanel(state) {
       linesPart(),
     ),
     recordingPart(target, shownSignals(target), command),
+    timingPart(target),
   ];
 }
 

@@ -110,6 +110,10 @@ def test_a_step_is_recorded_and_saved(page: Any) -> None:
         picture = saved(page, part, "Save as PNG")
         assert picture.startswith(b"\x89PNG")
         assert len(picture) > 5000, "there are curves"
+    page.get_by_role("button", name="Larger").click()
+    page.get_by_text("Loop timing").click()
+    page.get_by_role("meter", name=re.compile(r"^Longest cycle: [\d.]+ % of the control period")).wait_for()
+    assert re.search(r"Cycles\s+\d{3}", page.get_by_role("table").inner_text())
     assert violations(page) == []
 
 
