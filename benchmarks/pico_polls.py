@@ -37,7 +37,7 @@ def main() -> None:
     notes = [
         "Longest: from the begin of a turn of communication to the begin of the next one. It is meant to be at most a "
         "millisecond. Each line carries as many bytes as it can: USB 64 bytes in 45 to 105 us, the UART 460800 or "
-        "921600 baud. A turn in which the diagnostics are written takes longest, once in a second.",
+        "921600 baud. A turn that writes a long line of the console takes longest.",
         "Simulated, with the cache of the flash and the contention of the cores. From its start on, core 1 must not "
         "access flash. The arithmetic is the compiler's, not the ROM's.",
     ]

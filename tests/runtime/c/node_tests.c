@@ -139,6 +139,33 @@ TEST(each_publication_has_its_own_time)
     CHECK_EQUAL(node.unsent, 0);
 }
 
+TEST(diagnostics_wait_for_a_call_without_values)
+{
+    begin();
+    run(21); /* values are due at 20 ms, too */
+    CHECK_EQUAL(sent[AT_PERIOD], 5);
+    CHECK_EQUAL(sent[DIAGNOSTICS], 0);
+    run(1); /* those of cycle 21 */
+    CHECK_EQUAL(sent[AT_CYCLES], 8);
+    CHECK_EQUAL(sent[DIAGNOSTICS], 0);
+    run(1);
+    CHECK_EQUAL(sent[DIAGNOSTICS], 1);
+    CHECK_EQUAL(node.unsent, 0);
+}
+
+TEST(diagnostics_wait_for_at_most_5_ms)
+{
+    begin();
+    for (unsigned int i = 0; i < 7; i++) {
+        fake_cycles(4); /* each call has a value that has changed */
+        epg_node_poll(&node, fake_port.now_ns);
+        CHECK_EQUAL(sent[ON_CHANGE], i + 1);
+        CHECK_EQUAL(sent[DIAGNOSTICS], fake_port.now_ns < 25 * MS ? 0 : 1);
+    }
+    CHECK_EQUAL(sent[DIAGNOSTICS], 1);
+    CHECK_EQUAL(node.unsent, 0);
+}
+
 TEST(a_late_poll_makes_nothing_up_and_moves_nothing)
 {
     begin();
@@ -178,8 +205,8 @@ TEST(a_connection_begins_with_what_is_new)
     epg_node_poll(&node, fake_port.now_ns);
     CHECK_EQUAL(sent[AT_PERIOD], 1);
     CHECK_EQUAL(sent[ON_CHANGE], 1); /* a new subscriber has no value yet */
-    CHECK_EQUAL(sent[DIAGNOSTICS], 1);
     epg_node_poll(&node, fake_port.now_ns);
+    CHECK_EQUAL(sent[DIAGNOSTICS], 1);
     CHECK_EQUAL(sent[AT_PERIOD] + sent[ON_CHANGE], 2);
 }
 
@@ -286,10 +313,11 @@ TEST(stamps_are_of_the_control_cycle)
     CHECK_EQUAL(node.time_ns, 7 * MS);
     epg_node_set_time(&node, UINT64_C(1700000000) * 1000000000U + 9 * MS, 9 * MS);
     CHECK_EQUAL(epg_diagnostics_write(&node, (epg_stamp_t){0}, buffer, sizeof buffer) > 0, true);
-    run(13); /* diagnostics at 20 ms */
+    run(15); /* diagnostics at 22 ms */
+    CHECK_EQUAL(sent[DIAGNOSTICS], 1);
     epg_cdr_reader_t reader = {.data = buffer, .size = last_size};
     CHECK_EQUAL(epg_cdr_read_i32(&reader), 1700000000);
-    CHECK_EQUAL(epg_cdr_read_u32(&reader), 20 * MS);
+    CHECK_EQUAL(epg_cdr_read_u32(&reader), 22 * MS);
 }
 
 /** Reads the message in `buffer`; returns the value of `key`, and for "message" the text beside the level. */
@@ -380,7 +408,7 @@ TEST(diagnostics_fit_whatever_they_hold)
     static const char *components[1] = {component};
     memset(component, 'c', sizeof component - 1);
     begin();
-    run(1);
+    run(2);
     memset(node.name, 'n', sizeof node.name - 1);
     target.components = components;
     target.component_count = 1;
@@ -479,6 +507,7 @@ TEST(cycles_that_a_history_cannot_hold_are_counted)
 
 RUN(ENTRY(no_cycle_of_a_history_is_left_out), ENTRY(a_cycle_of_a_history_waits_for_room),
     ENTRY(cycles_that_a_history_cannot_hold_are_counted), ENTRY(each_publication_has_its_own_time),
+    ENTRY(diagnostics_wait_for_a_call_without_values), ENTRY(diagnostics_wait_for_at_most_5_ms),
     ENTRY(a_late_poll_makes_nothing_up_and_moves_nothing), ENTRY(without_room_the_newest_values_wait),
     ENTRY(a_connection_begins_with_what_is_new), ENTRY(values_of_a_message_arrive_together),
     ENTRY(a_message_of_another_type_is_counted), ENTRY(enabling_by_a_topic),

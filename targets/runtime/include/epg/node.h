@@ -72,7 +72,11 @@ typedef struct epg_node {
 void epg_node_start(epg_node_t *node, const epg_target_t *target,
                     bool (*send)(size_t publication, const void *data, size_t size));
 
-/** Sends the publications that are due at `now_ns` (board time).  Only while the middleware is connected. */
+/**
+ * Sends the publications that are due at `now_ns` (board time).  Only while the middleware is connected.
+ *
+ * The diagnostics wait for a call in which no values are due, for at most 5 ms, so that no call takes long.
+ */
 void epg_node_poll(epg_node_t *node, uint64_t now_ns);
 
 /** Must be called when the connection is up (again).  Drops publications that were due before; schedules begin now. */

@@ -13,6 +13,8 @@
 #include "epg/port.h"
 
 #define SECOND_NS 1000000000
+/** Writing the diagnostics takes as long as all values together.  They wait this long for a call without values. */
+#define DIAGNOSTICS_WAIT_NS UINT64_C(5000000)
 
 /** Remembers that `values` are those of a cycle, and its time. */
 static void accept_values(epg_node_t *node)
@@ -143,15 +145,25 @@ void epg_node_connected(epg_node_t *node, uint64_t now_ns)
     }
 }
 
-/** Sends publication `index` if it is due with the present values, or waits for room. */
-static void publish_if_due(epg_node_t *node, size_t index, uint64_t now_ns)
+/** Sends publication `index` if it is due with the present values, or waits for room.  Returns true if it was. */
+static bool publish_if_due(epg_node_t *node, size_t index, uint64_t now_ns)
 {
     epg_node_publication_t *state = &node->publications[index];
     const bool due = is_due(node, &node->target->publications[index], state, now_ns);
     node->unsent += due && state->waiting ? 1U : 0U;
-    if (due || state->waiting) {
+    const bool published = due || state->waiting;
+    if (published) {
         publish(node, index, now_ns);
     }
+    return published;
+}
+
+/** Returns true if publication `index` can wait for a call with less work. */
+static bool can_wait(const epg_node_t *node, size_t index, uint64_t now_ns)
+{
+    const epg_node_publication_t *state = &node->publications[index];
+    return node->target->publications[index].role == EPG_TOPIC_DIAGNOSTICS && !state->waiting &&
+           now_ns < state->due_ns + DIAGNOSTICS_WAIT_NS;
 }
 
 /**
@@ -163,18 +175,23 @@ static bool publish_cycle(epg_node_t *node, uint64_t now_ns)
     bool done = true;
     for (size_t i = 0; i < node->target->publication_count; i++) {
         if (node->target->publications[i].trigger == EPG_TOPIC_CYCLES) {
-            publish_if_due(node, i, now_ns);
+            (void)publish_if_due(node, i, now_ns);
             done = done && !node->publications[i].waiting;
         }
     }
     return done;
 }
 
-/** Sends the publications of all cycles in the history, the oldest first, until there is no more room. */
-static void publish_history(epg_node_t *node, epg_history_t *history, uint64_t now_ns)
+/**
+ * Sends the publications of all cycles in the history, the oldest first, until there is no more room.  Returns true if
+ * there was a cycle.
+ */
+static bool publish_history(epg_node_t *node, epg_history_t *history, uint64_t now_ns)
 {
+    bool found = false;
     /* Cycles that end meanwhile wait for the next call, so that this one ends. */
     for (uint32_t left = history->depth; left > 0U && epg_history_peek(history, node->values); left--) {
+        found = true;
         accept_values(node);
         if (!publish_cycle(node, now_ns)) {
             break;
@@ -184,19 +201,19 @@ static void publish_history(epg_node_t *node, epg_history_t *history, uint64_t n
     const uint32_t lost = (uint32_t)atomic_load(&history->lost);
     node->unsent += lost - node->lost_seen;
     node->lost_seen = lost;
+    return found;
 }
 
 void epg_node_poll(epg_node_t *node, uint64_t now_ns)
 {
     epg_history_t *history = history_of(node);
-    if (history != NULL) {
-        publish_history(node, history, now_ns);
-    }
+    bool busy = history != NULL && publish_history(node, history, now_ns);
     /* All publications that are due now get values of the same cycle. */
     take_values(node);
     for (size_t i = 0; i < node->target->publication_count; i++) {
-        if (history == NULL || node->target->publications[i].trigger != EPG_TOPIC_CYCLES) {
-            publish_if_due(node, i, now_ns);
+        const bool by_history = history != NULL && node->target->publications[i].trigger == EPG_TOPIC_CYCLES;
+        if (!by_history && !(busy && can_wait(node, i, now_ns))) {
+            busy = publish_if_due(node, i, now_ns) || busy;
         }
     }
 }
