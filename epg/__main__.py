@@ -11,7 +11,7 @@ if not __package__:  # Started by its path: Python has put the package's folder 
 
     sys.path[0] = dirname(dirname(abspath(__file__)))
 
-from epg.cli.main import main
+from epg.cli.main import main_and_exit
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main_and_exit()

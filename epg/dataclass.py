@@ -8,8 +8,8 @@
 
 ``dataclasses.dataclass`` compiles up to six methods for each class.  In a run of the generator that took eight times as
 long as ``python -c pass``.  :func:`dataclass` lets the standard library collect the fields only.  It compiles
-``__init__`` when the first object of a class is made, and no other method.  The functions of ``dataclasses``, such as
-``field()``, ``replace()`` and ``asdict()``, work with these classes, too.
+``__init__`` for a class with many objects, and no other method.  The functions of ``dataclasses``, such as ``field()``,
+``replace()`` and ``asdict()``, work with these classes, too.
 """
 
 from __future__ import annotations
@@ -17,6 +17,9 @@ from __future__ import annotations
 import dataclasses
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
+
+MANY = 32
+"""The number of objects of a class that take about as long as the compilation of its ``__init__``."""
 
 if TYPE_CHECKING:
     from dataclasses import dataclass as dataclass
@@ -30,13 +33,15 @@ else:
 def _finish(cls: type[Any], frozen: bool) -> type[Any]:
     """Makes ``cls`` a data class.  Methods that its body defines stay as they are."""
     own = set(vars(cls))
+    types = vars(cls).get("__annotations__", {})
+    # The standard library parses each annotation three times to find the few that are no fields.
+    cls.__annotations__ = {name: type if "ClassVar" in str(type) else object for name, type in types.items()}
     dataclasses.dataclass(init=False, repr=False, eq=False)(cls)
+    cls.__annotations__ = types
+    for field in dataclasses.fields(cls):
+        field.type = types.get(field.name, field.type)
     compared = [field.name for field in dataclasses.fields(cls) if field.compare]
     values = attrgetter(*compared) if compared else lambda self: ()
-
-    def __init__(self: Any, /, *arguments: Any, **named: Any) -> None:
-        cls.__init__ = made = _init(cls)
-        made(self, *arguments, **named)
 
     def __eq__(self: Any, other: object) -> Any:
         return values(self) == values(other) if other.__class__ is self.__class__ else NotImplemented
@@ -44,7 +49,7 @@ def _finish(cls: type[Any], frozen: bool) -> type[Any]:
     def __hash__(self: Any) -> int:
         return hash(values(self))
 
-    methods: dict[str, Any] = {"__init__": __init__, "__repr__": _repr, "__eq__": __eq__}
+    methods: dict[str, Any] = {"__init__": _first_init(cls), "__repr__": _repr, "__eq__": __eq__}
     if frozen:
         methods |= {"__hash__": __hash__, "__setattr__": _refuse, "__delattr__": _refuse}
     elif "__eq__" not in own:
@@ -56,8 +61,38 @@ def _finish(cls: type[Any], frozen: bool) -> type[Any]:
     return cls
 
 
+def _first_init(cls: type[Any]) -> Any:
+    """The function ``__init__`` for the first objects of a data class.  It is not compiled, so it is made fast.
+
+    The compiled one replaces it after :data:`MANY` objects, or earlier to raise the TypeError for wrong arguments.
+    """
+    fields = dataclasses.fields(cls)
+    names = [field.name for field in fields]
+    defaults = {field.name: field.default for field in fields if field.default is not dataclasses.MISSING}
+    makers = [(f.name, f.default_factory) for f in fields if f.default_factory is not dataclasses.MISSING]
+    left = MANY
+
+    def __init__(self: Any, /, *arguments: Any, **named: Any) -> None:
+        nonlocal left
+        left -= 1
+        values = {**defaults, **dict(zip(names, arguments)), **named}
+        for name, make in makers:
+            if name not in values:
+                values[name] = make()
+        right = len(arguments) <= len(names) and named.keys().isdisjoint(names[: len(arguments)])
+        if left == 0 or not right or values.keys() != set(names):
+            cls.__init__ = made = _init(cls)
+            made(self, *arguments, **named)
+            return
+        self.__dict__.update(values)
+        if hasattr(cls, "__post_init__"):
+            self.__post_init__()
+
+    return __init__
+
+
 def _init(cls: type[Any]) -> Any:
-    """The function ``__init__`` of a data class.  It changes ``__dict__``: a frozen class refuses assignments."""
+    """The compiled ``__init__`` of a data class.  It changes ``__dict__``: a frozen class refuses assignments."""
     known: dict[str, Any] = {"MISSING": dataclasses.MISSING}
     parameters, values = [], []
     for field in dataclasses.fields(cls):

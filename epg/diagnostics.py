@@ -9,7 +9,6 @@ True
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Iterator
 from dataclasses import field
 from typing import Any, TypeVar
@@ -139,6 +138,8 @@ def did_you_mean(word: str, choices: Iterable[str], otherwise: str = "") -> str:
 
     If no choice is near, the hint is ``otherwise`` and a list of the choices, at most 24.  Empty without choices.
     """
+    import difflib
+
     known = sorted(choices)
     folded = {choice.casefold(): choice for choice in known}
     near = difflib.get_close_matches(word.casefold(), folded, n=1, cutoff=0.6)

@@ -65,7 +65,7 @@ _NUMBER = r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 _QUANTITY = re.compile(rf"({_NUMBER})\s*(\S.*?)?\s*")
 _DECIMAL_COMMA = re.compile(r"[-+]?[0-9]+,[0-9]+(\s*[A-Za-zµμ%][\w./%]*)?")
 _LONGEST = 200
-_RATIO = re.compile(rf"({_NUMBER})\s*/\s*({_NUMBER})")
+_RATIO = rf"({_NUMBER})\s*/\s*({_NUMBER})"
 
 
 class QuantityError(ValueError):
@@ -168,7 +168,7 @@ def parse_ratio(value: object) -> Fraction:
     if isinstance(value, float) and math.isfinite(value):
         return Fraction(repr(value))
     if isinstance(value, str):
-        match = _RATIO.fullmatch(value.strip()) if len(value) <= _LONGEST else None
+        match = re.fullmatch(_RATIO, value.strip()) if len(value) <= _LONGEST else None
         if match and _is_small(match[1]) and _is_small(match[2]) and Fraction(match[2]) != 0:
             return Fraction(match[1]) / Fraction(match[2])
         problem.hint = number_hint(value) or problem.hint

@@ -45,9 +45,9 @@ class Span:
 class YamlNode:
     """One value of a YAML document with its position.
 
-    ``value`` is a scalar, a tuple of nodes or a mapping of names to nodes.  For a mapping, ``keys`` holds the position
-    of each key.  ``origins`` are the positions (innermost first) of the ``extends`` that lead to the file with this
-    value.  A message about an inherited value shows them.
+    ``value`` is a scalar, a tuple of nodes or a mapping of names to nodes: a dict or a proxy of one.  For a mapping,
+    ``keys`` holds the position of each key.  ``origins`` are the positions (innermost first) of the ``extends`` that
+    lead to the file with this value.  A message about an inherited value shows them.
     """
 
     value: Scalar | tuple[YamlNode, ...] | Mapping[str, YamlNode]
@@ -57,18 +57,19 @@ class YamlNode:
 
     @property
     def is_mapping(self) -> bool:
-        return isinstance(self.value, Mapping)
+        return isinstance(self.value, (MappingProxyType, dict))
 
     @property
     def is_sequence(self) -> bool:
         return isinstance(self.value, tuple)
 
     def __contains__(self, key: object) -> bool:
-        return isinstance(self.value, Mapping) and key in self.value
+        return isinstance(self.value, (MappingProxyType, dict)) and key in self.value
 
     def __getitem__(self, key: str | int) -> YamlNode:
-        if isinstance(self.value, Mapping) and isinstance(key, str):
-            return self.value[key]
+        if isinstance(self.value, (MappingProxyType, dict)) and isinstance(key, str):
+            child: YamlNode = self.value[key]
+            return child
         if isinstance(self.value, tuple) and isinstance(key, int):
             return self.value[key]
         raise KeyError(key)
@@ -85,7 +86,7 @@ class YamlNode:
 
     def items(self) -> Iterator[tuple[str, YamlNode]]:
         """Keys and values of a mapping in the order of the file; nothing for any other value."""
-        if isinstance(self.value, Mapping):
+        if isinstance(self.value, (MappingProxyType, dict)):
             yield from self.value.items()
 
     def elements(self) -> tuple[YamlNode, ...]:
@@ -98,7 +99,7 @@ class YamlNode:
 
     def plain(self) -> Any:
         """The value as dictionaries, lists and scalars without positions, for other libraries."""
-        if isinstance(self.value, Mapping):
+        if isinstance(self.value, (MappingProxyType, dict)):
             return {key: node.plain() for key, node in self.value.items()}
         if isinstance(self.value, tuple):
             return [node.plain() for node in self.value]

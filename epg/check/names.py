@@ -43,7 +43,7 @@ STANDARD_TYPES = frozenset(
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,62}")
 _ROS_TOKEN = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _NOT_IN_CMAKE = re.compile(r"\||\$[({]|\$(ENV|CACHE)\{|\]=*\]")
-_NOT_IN_PROJECTS = re.compile("[#<>?]" if os.name == "nt" else r'[#<>?:;"\\]')
+_NOT_IN_PROJECTS = "[#<>?]" if os.name == "nt" else r'[#<>?:;"\\]'
 
 
 def identifier_problem(name: str) -> str | None:
@@ -155,7 +155,7 @@ def project_folder_problem(path: str) -> str | None:
     backslash, the files that CMake writes for Make fail with ``?``, and its custom targets fail with ``#``, ``<`` and
     ``>``.
     """
-    found = _NOT_IN_PROJECTS.search(path)
+    found = re.search(_NOT_IN_PROJECTS, path)
     return f"CMake cannot build a project with '{found[0]}' in its path" if found else cmake_path_problem(path)
 
 

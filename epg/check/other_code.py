@@ -23,13 +23,13 @@ from epg.source import Span
 if TYPE_CHECKING:
     from epg.documents.ioc_file import Ioc, IocEntry
 
-_PIN = re.compile(r"(P[A-Z]\d{1,2})(?:[-_ ].*)?\.Signal")  # PA13 (JTMS/SWDIO), PC14-OSC32_IN (OSC32_IN), PC2_C
-_VIRTUAL = re.compile(r"VP_(\w+)\.Signal")
-_SHARED = re.compile(r"SH\.(.+)\.\d+")
-_PERIPHERAL = re.compile(r"Mcu\.IP\d+")
-_STREAM = re.compile(r"Dma\.(.+)\.\d+\.Instance")  # Dma.USART2_RX.0.Instance
-_INTERRUPT = re.compile(r"NVIC\.(\w+)_IRQn")
-_TIME_BASE = re.compile(r"SYS_VS_(tim\d+)")  # the timer of HAL's tick
+_PIN = r"(P[A-Z]\d{1,2})(?:[-_ ].*)?\.Signal"  # PA13 (JTMS/SWDIO), PC14-OSC32_IN (OSC32_IN), PC2_C
+_VIRTUAL = r"VP_(\w+)\.Signal"
+_SHARED = r"SH\.(.+)\.\d+"
+_PERIPHERAL = r"Mcu\.IP\d+"
+_STREAM = r"Dma\.(.+)\.\d+\.Instance"  # Dma.USART2_RX.0.Instance
+_INTERRUPT = r"NVIC\.(\w+)_IRQn"
+_TIME_BASE = r"SYS_VS_(tim\d+)"  # the timer of HAL's tick
 _ALWAYS = ("GPIO", "GPXTI", "DEBUG", "SYS", "RCC")
 """Beginnings of signals whose peripheral need not be in CubeMX's list of peripherals."""
 _FAULTS = ("NonMaskableInt", "HardFault", "MemoryManagement", "BusFault", "UsageFault", "DebugMonitor")
@@ -80,7 +80,7 @@ def check_other_code(ioc: Ioc, target: Target, target_span: Span, diagnostics: D
     known = {name for peripheral in target.soc.peripherals.values() for name in peripheral.instances}
     instances = {name: OtherUse(name, entry.span) for name, entry in listed.items() if name in known}
     for _, entry in ioc.matching(_VIRTUAL):
-        base = _TIME_BASE.fullmatch(entry.value)
+        base = re.fullmatch(_TIME_BASE, entry.value)
         name = base[1].upper() if base else entry.value.partition("_")[0]
         if name in known:
             instances[name] = OtherUse(f"{name} as the time base of HAL" if base else entry.value, entry.span)

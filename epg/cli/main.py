@@ -19,6 +19,8 @@ import importlib
 import os
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
+from typing import NoReturn
 
 import epg
 from epg import bootstrap
@@ -52,9 +54,9 @@ COMMANDS = {
 WITHOUT_PACKAGES = ("doctor", "find-tools")
 """The commands that must run while Python packages are missing.  They install none."""
 
-WITHOUT_COLLECTOR = ("check", "generate", "generate-model", "generate-system", "generate-all")
-"""The commands that run without Python's garbage collector: they end after a moment, and almost all of their objects
-live as long as they run."""
+SHORT = ("check", "generate", "generate-model", "generate-system", "generate-all")
+"""The commands that end after a moment.  They run without Python's garbage collector, because almost all of their
+objects live as long as they run."""
 
 EXIT_OK, EXIT_MISTAKES, EXIT_USAGE, EXIT_BUG, EXIT_MISSING = range(5)
 
@@ -67,7 +69,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Runs ``epg`` with ``arguments``, or with those of the process.  Returns the exit status."""
     words = sys.argv[1:] if arguments is None else arguments
     command = _command(words)
-    if arguments is None and command in WITHOUT_COLLECTOR:
+    if arguments is None and command in SHORT:
         gc.disable()
     if command not in WITHOUT_PACKAGES:
         try:
@@ -94,6 +96,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.print_help()
         return EXIT_USAGE
     return _run(options)
+
+
+def main_and_exit() -> NoReturn:
+    """Runs ``epg`` with the arguments of the process, and ends the process.
+
+    Python frees all objects before it ends, which takes longer than ``python -c pass``.  Short commands leave that to
+    the operating system; they have no threads and no temporary files.
+    """
+    status = main()
+    if _command(sys.argv[1:]) in SHORT:
+        with suppress(OSError):  # then Python reports it
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os._exit(status)
+    sys.exit(status)
 
 
 def _command(arguments: Sequence[str]) -> str | None:

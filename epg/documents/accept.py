@@ -84,11 +84,12 @@ class _Check:
             return schema
         if self._partial and value is None:
             return True
-        return all(
-            self._fits_keyword(value, keyword, wanted, schema)
-            for keyword, wanted in schema.items()
-            if keyword not in _ANNOTATIONS and not keyword.startswith("x-")
-        )
+        for keyword, wanted in schema.items():
+            if keyword in _ANNOTATIONS or keyword.startswith("x-"):
+                continue
+            if not self._fits_keyword(value, keyword, wanted, schema):
+                return False
+        return True
 
     # One function, because it is a list of cases: one for each keyword.
     def _fits_keyword(self, value: Any, keyword: str, wanted: Any, schema: Schema) -> bool:

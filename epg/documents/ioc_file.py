@@ -46,10 +46,10 @@ class Ioc:
         """The value of ``key``; empty if the key does not exist."""
         return self.entries[key].value if key in self.entries else ""
 
-    def matching(self, pattern: re.Pattern[str]) -> Iterator[tuple[re.Match[str], IocEntry]]:
+    def matching(self, pattern: str) -> Iterator[tuple[re.Match[str], IocEntry]]:
         """The entries whose whole key matches, in the order of the file."""
         for key, entry in self.entries.items():
-            match = pattern.fullmatch(key)
+            match = re.fullmatch(pattern, key)
             if match is not None:
                 yield match, entry
 

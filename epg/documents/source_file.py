@@ -12,6 +12,7 @@ import bisect
 import re
 from collections.abc import Callable
 from functools import cached_property
+from itertools import accumulate
 from pathlib import Path
 
 from epg.dataclass import dataclass
@@ -30,7 +31,6 @@ STRING = re.compile(r'"((?:\\.|[^"\\\n])*)(?:"|\\?(?=\n|\Z))')
 """A string; one without a closing quote ends with its line."""
 _DIRECTIVE = re.compile(r"^[ \t]*#(?:\\\r?\n|[^\n])*", re.MULTILINE)
 _LONGEST_SHOWN = 1000
-_NOT_NEWLINE = re.compile(r"[^\n]")
 
 
 C11 = frozenset(
@@ -72,7 +72,7 @@ class SourceFile:
 
     @cached_property
     def _line_starts(self) -> list[int]:
-        return [0, *(match.end() for match in re.finditer("\n", self.text))]
+        return [0, *accumulate(len(line) + 1 for line in self.text.split("\n")[:-1])]
 
     def span(self, start: int, end: int | None = None) -> Span:
         """The position of the text from offset ``start`` to ``end``, which must be on one line."""
@@ -144,5 +144,9 @@ def decode(data: bytes) -> str:
 def _blank(match: re.Match[str]) -> str:
     matched = match[0]
     if matched[0] in "\"'" and len(matched) >= 2 and matched[-1] == matched[0]:
-        return matched[0] + _NOT_NEWLINE.sub(" ", matched[1:-1]) + matched[-1]
-    return _NOT_NEWLINE.sub(" ", matched)
+        return matched[0] + _blanks(matched[1:-1]) + matched[-1]
+    return _blanks(matched)
+
+
+def _blanks(text: str) -> str:
+    return "\n".join(" " * len(line) for line in text.split("\n"))

@@ -38,6 +38,7 @@ _OCTAL = re.compile(r"0o[0-7]+")
 _HEX = re.compile(r"0x[0-9a-fA-F]+")
 _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
 _SPECIAL = re.compile(r"([-+]?)\.(inf|Inf|INF)|\.(nan|NaN|NAN)")
+_BEGINS_NUMBER = frozenset("+-.0123456789")
 _MAX_DIGITS = 64
 
 
@@ -131,20 +132,15 @@ class _Builder:
 
     def feed(self, event: yaml.Event) -> bool:
         """Adds one event to the tree.  False if the rest of the document cannot be read after an error."""
-        if isinstance(event, yaml.DocumentStartEvent):
-            self.documents += 1
-            if self.documents > 1:
-                return self._refuse(
-                    event, "yaml-documents", "the file has a second document", "keep one document and remove '---'"
-                )
-        if isinstance(event, yaml.AliasEvent) or getattr(event, "anchor", None):
+        if isinstance(event, yaml.AliasEvent) or (isinstance(event, yaml.NodeEvent) and event.anchor):
             return self._refuse(
                 event, "yaml-alias", "anchors and aliases are not supported", "write the value again, or use 'extends'"
             )
-        tag = getattr(event, "tag", None)
-        if tag not in (None, "!"):
-            return self._refuse(event, "yaml-tag", f"tags such as '{tag}' are not supported", "remove the tag")
-        if isinstance(event, (yaml.MappingStartEvent, yaml.SequenceStartEvent)):
+        if isinstance(event, (yaml.ScalarEvent, yaml.CollectionStartEvent)) and event.tag not in (None, "!"):
+            return self._refuse(event, "yaml-tag", f"tags such as '{event.tag}' are not supported", "remove the tag")
+        if isinstance(event, yaml.ScalarEvent):
+            self._scalar(event)
+        elif isinstance(event, yaml.CollectionStartEvent):
             if len(self.stack) >= MAX_DEPTH:
                 return self._refuse(
                     event, "yaml-depth", f"this is nested deeper than {MAX_DEPTH} levels", "is this the right file?"
@@ -164,8 +160,12 @@ class _Builder:
                 self._add(YamlNode(MappingProxyType(done.entries), done.span, MappingProxyType(done.keys)))
             else:
                 self._add(YamlNode(tuple(done.children), done.span))
-        elif isinstance(event, yaml.ScalarEvent):
-            self._scalar(event)
+        elif isinstance(event, yaml.DocumentStartEvent):
+            self.documents += 1
+            if self.documents > 1:
+                return self._refuse(
+                    event, "yaml-documents", "the file has a second document", "keep one document and remove '---'"
+                )
         return True
 
     def _scalar(self, event: yaml.ScalarEvent) -> None:
@@ -238,7 +238,7 @@ class _Builder:
             return None
         if text in _BOOL:
             return _BOOL[text]
-        if len(text) > _MAX_DIGITS:
+        if text[0] not in _BEGINS_NUMBER or len(text) > _MAX_DIGITS:
             return text
         if _INT.fullmatch(text):
             digits = text.lstrip("+-")
@@ -277,7 +277,7 @@ class _Builder:
     def _span(self, event: yaml.Event) -> Span:
         start, end = _marks(event)
         last = end.column + 1 if end.line == start.line else start.column + 2
-        if isinstance(event, (yaml.MappingStartEvent, yaml.SequenceStartEvent)):
+        if isinstance(event, yaml.CollectionStartEvent):
             last = start.column + 2
         return Span(self.file, start.line + 1, start.column + 1, max(last, start.column + 2))
 

@@ -18,8 +18,8 @@ from collections import Counter
 from epg.dataclass import dataclass
 
 LINE_END = re.compile("\r\n|\r|\n|\x85|\u2028|\u2029")
-_ENTRY = re.compile(r"""(?P<key>"(?:[^"\\]|\\.)*"|'[^']*'|[^\s'"{\[#](?:(?! \#).)*?)\s*:(?:\s+(?P<value>.*)|$)""")
-_WITHOUT_COLON = re.compile(r"(?P<key>[A-Za-z_][\w.]*)(?P<between>\s*=\s*|\s*:|\s+|$)(?P<value>.*)")
+_ENTRY = r"""(?P<key>"(?:[^"\\]|\\.)*"|'[^']*'|[^\s'"{\[#](?:(?! \#).)*?)\s*:(?:\s+(?P<value>.*)|$)"""
+_WITHOUT_COLON = r"(?P<key>[A-Za-z_][\w.]*)(?P<between>\s*=\s*|\s*:|\s+|$)(?P<value>.*)"
 _COMMENT = re.compile(r"(?:^|(?<=\s))(?://+|/\*)")
 _LONGEST = 1000  # A longer line was not written by a person, and its search would take too much time.
 _QUOTES = "\"'"
@@ -40,7 +40,7 @@ class Mistake:
 
 def missing_colon(text: str) -> tuple[str, str] | None:
     """Message and hint for ``key value``, ``key = value`` and ``key:value``, or None for other text."""
-    match = _WITHOUT_COLON.fullmatch(text.strip())
+    match = re.fullmatch(_WITHOUT_COLON, text.strip())
     if match is None or (match["between"] == ":" and match["value"].startswith(("/", ":"))):
         return None
     meant = f"{match['key']}: {match['value']}".rstrip()
@@ -130,10 +130,10 @@ class _Reader:
             rest = content[1:].lstrip(" ")
             indent += len(content) - len(rest)
             content = rest
-            if content.startswith("- ") or _ENTRY.match(content):
+            if content.startswith("- ") or re.match(_ENTRY, content):
                 kind = "list" if content.startswith("- ") else "map"
                 self.levels.append(_Level(indent, number, kind))
-        entry = _ENTRY.match(content)
+        entry = re.match(_ENTRY, content)
         if entry is None or self.levels[-1].kind != "map":
             return self._value(number, line, indent)
         value = entry["value"] or ""
@@ -146,7 +146,7 @@ class _Reader:
     # One function, because its branches are the complete cases of one decision: this indentation after that level.
     def _place(self, number: int, indent: int, content: str) -> Mistake | None:
         """Finds the level of a line by its indentation, or begins a new one.  Returns a mistake, if there is one."""
-        entry = _ENTRY.match(content)
+        entry = re.match(_ENTRY, content)
         kind = "list" if re.match(r"-(\s|$)", content) else "map" if entry else "text"
         left: list[_Level] = []
         while self.levels and indent < self.levels[-1].indent:
@@ -206,7 +206,7 @@ class _Reader:
         line = self.lines[number - 1]
         content = line.lstrip(" ")
         indent = len(line) - len(content)
-        entry = _ENTRY.match(content)
+        entry = re.match(_ENTRY, content)
         end = indent + (entry.end("key") if entry else len(content)) + 1
         spaces = "1 space" if indent == 1 else f"{indent} spaces" if indent else "no space"
         return Mistake(number, indent + 1, end, f"wrong indentation: {spaces} before this line", hint)
@@ -282,7 +282,7 @@ class _Reader:
         """
         _, opened, _ = self.open[0]
         first = self.lines[opened - 1]
-        entry = _ENTRY.match(line.lstrip(" "))
+        entry = re.match(_ENTRY, line.lstrip(" "))
         if entry is None or len(line) - len(line.lstrip(" ")) > len(first) - len(first.lstrip(" ")):
             return None
         return self._open_mistake()

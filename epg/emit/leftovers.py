@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import os
 import re
-import secrets
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -18,7 +17,7 @@ from pathlib import Path
 
 def temporary_beside(path: Path) -> Path:
     """A unique path in the same folder, for contents that are renamed to ``path`` when they are complete."""
-    return path.with_name(f".{path.name}.{secrets.token_hex(6)}")
+    return path.with_name(f".{path.name}.{os.urandom(6).hex()}")
 
 
 def lock(file: int) -> None:
@@ -70,10 +69,11 @@ def held_folder(path: Path) -> Iterator[None]:
 
 def remove_leftovers(path: Path) -> None:
     """Removes the temporary files and folders of ``path`` that killed runs left.  Keeps those that are in use."""
-    pattern = re.compile(rf"\.{re.escape(path.name)}\.[0-9a-f]{{12}}")
+    beginning = f".{path.name}."
     with suppress(OSError, ValueError):
         for entry in os.scandir(path.parent):
-            if pattern.fullmatch(entry.name) and not entry.is_symlink():
+            unique = entry.name.removeprefix(beginning) if entry.name.startswith(beginning) else ""
+            if re.fullmatch("[0-9a-f]{12}", unique) and not entry.is_symlink():
                 _remove_unless_held(entry)
 
 

@@ -20,11 +20,12 @@ def write_outputs(folder: Path, files: Mapping[str, str]) -> list[str]:
     Raises PermissionError if a symbolic link leads out of ``folder``, and OSError for other failures.
     """
     written = []
+    inside = folder.resolve()
     for name, text in sorted(files.items()):
         path = folder / name
         if os.path.normpath(name).startswith(("..", "/")):
             raise ValueError(f"{name!r} is outside the output folder")
-        if folder.resolve() not in path.resolve().parents:
+        if inside not in path.resolve().parents:
             raise PermissionError(errno.EPERM, "a link leads out of the output folder: remove it", str(path))
         data = text.encode("utf-8")
         try:

@@ -36,10 +36,10 @@ PRIMITIVES = (
 
 _LARGEST = 1 << 20  # the largest bound of an array or string; keeps hostile files from costing memory
 
-_TYPE = re.compile(r"(?P<base>[A-Za-z][A-Za-z0-9_/]*)(?:<=(?P<bound>\d+))?(?:\[(?P<array>(?:<=)?\d*)\])?")
-_NAME = re.compile(r"[a-z](?:_?[a-z0-9]+)*")
-_CONSTANT = re.compile(r"[A-Z](?:_?[A-Z0-9]+)*")
-_NESTED = re.compile(r"(?:[a-z][a-z0-9_]*/)?(?:msg/)?[A-Z][A-Za-z0-9]*|[a-z][a-z0-9_]*/msg/[A-Z][A-Za-z0-9]*")
+_TYPE = r"(?P<base>[A-Za-z][A-Za-z0-9_/]*)(?:<=(?P<bound>\d+))?(?:\[(?P<array>(?:<=)?\d*)\])?"
+_NAME = r"[a-z](?:_?[a-z0-9]+)*"
+_CONSTANT = r"[A-Z](?:_?[A-Z0-9]+)*"
+_NESTED = r"(?:[a-z][a-z0-9_]*/)?(?:msg/)?[A-Z][A-Za-z0-9]*|[a-z][a-z0-9_]*/msg/[A-Z][A-Za-z0-9]*"
 
 
 @dataclass(frozen=True)
@@ -126,14 +126,14 @@ def _line(
         diagnostics.error("message-definition", at, "the name of the field is missing", hint="<type> <name>")
         return None
     if after.startswith("="):
-        if not _CONSTANT.fullmatch(name[0]):
+        if not re.fullmatch(_CONSTANT, name[0]):
             hint = "capital letters, digits and single underscores, for example MAX_SPEED"
             diagnostics.error("message-definition", span, f"'{name[0]}' cannot be the name of a constant", hint=hint)
         constants[name[0]] = after[1:].strip()
         return None
-    if not _NAME.fullmatch(name[0]):
+    if not re.fullmatch(_NAME, name[0]):
         hint = "small letters, digits and single underscores, for example max_speed"
-        if _CONSTANT.fullmatch(name[0]):
+        if re.fullmatch(_CONSTANT, name[0]):
             hint = f"write a constant with '=': {name[0]}=<value>"
         diagnostics.error("message-definition", span, f"'{name[0]}' cannot be the name of a field", hint=hint)
         return None
@@ -141,14 +141,14 @@ def _line(
 
 
 def _type(text: str, package: str, span: Span, diagnostics: Diagnostics) -> FieldType | None:
-    found = _TYPE.fullmatch(text)
+    found = re.fullmatch(_TYPE, text)
     if found is None:
         hint = "for example float64, float64[3], string or geometry_msgs/Vector3"
         diagnostics.error("message-definition", span, f"'{text}' is not a type of ROS 2", hint=hint)
         return None
     base, bound, array = found["base"], found["bound"], found["array"]
     if base not in PRIMITIVES:
-        if not _NESTED.fullmatch(base):
+        if not re.fullmatch(_NESTED, base):
             hint = did_you_mean(base, PRIMITIVES)
             diagnostics.error("message-definition", span, f"'{base}' is not a type of ROS 2", hint=hint)
             return None

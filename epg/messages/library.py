@@ -18,7 +18,7 @@ from epg.source import Span
 
 _DEPTH = 16  # messages inside each other
 
-_FULL_NAME = re.compile(r"([a-z][a-z0-9_]*)/(?:msg/)?([A-Z][A-Za-z0-9]*)")
+_FULL_NAME = r"([a-z][a-z0-9_]*)/(?:msg/)?([A-Z][A-Za-z0-9]*)"
 
 
 def full_name(text: str) -> str | None:
@@ -27,7 +27,7 @@ def full_name(text: str) -> str | None:
     >>> full_name("sensor_msgs/Imu"), full_name("Own.msg")
     ('sensor_msgs/msg/Imu', None)
     """
-    found = _FULL_NAME.fullmatch(text)
+    found = re.fullmatch(_FULL_NAME, text)
     return f"{found[1]}/msg/{found[2]}" if found else None
 
 

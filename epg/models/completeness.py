@@ -16,7 +16,7 @@ from epg.models.link import Linked
 from epg.source import Span
 
 _EXTERN = re.compile(r"\bextern\s[^;(){}]{0,300};")
-_VIRTUAL = re.compile(r"\bvirtual\s[^;(){}]{0,200}?(~?\w{1,255})\s{0,80}\(", re.ASCII)
+_VIRTUAL = r"\bvirtual\s[^;(){}]{0,200}?(~?\w{1,255})\s{0,80}\("
 _HINT = "check that all files are there as 20-sim exported them, or export the model again"
 
 
@@ -45,7 +45,7 @@ def check_methods(linked: Linked, class_name: str, diagnostics: Diagnostics) -> 
     defined = {function.name for _, function in linked.functions() if function.owner == class_name}
     wanted = {class_name, f"~{class_name}", "Initialize", "Step"}  # the linker needs virtual methods even if not called
     for header in linked.headers:
-        wanted |= {match[1] for match in _VIRTUAL.finditer(header.file.code)}
+        wanted |= {match[1] for match in re.finditer(_VIRTUAL, header.file.code, re.ASCII)}
     missing: dict[str, Span] = {}
     for header in linked.headers:
         for start, body in _bodies(class_name, header):

@@ -14,7 +14,7 @@ _NAME = re.compile(r"([A-Za-z_]\w{0,255})\s{0,80}(?:\[[^\]]{0,300}\]\s{0,80}){0,
 _CLASS = re.compile(r"\bclass\s{1,80}([A-Za-z_]\w{0,255})\s{0,80}(?::(?!:)[^;{}]{0,500})?\{", re.ASCII)
 _BRACE = re.compile(r"[{}]")
 _FRIEND = re.compile(r"\bfriend\b[^;]{0,300};")
-_METHOD = re.compile(r"\([^();{}]{0,1000}\)\s{0,80}(?:const\s{0,80}|override\s{0,80}|noexcept\s{0,80}){0,3};")
+_METHOD = r"\([^();{}]{0,1000}\)\s{0,80}(?:const\s{0,80}|override\s{0,80}|noexcept\s{0,80}){0,3};"
 
 
 def declared_names(code: Code) -> set[str]:
@@ -36,7 +36,7 @@ def open_classes(code: Code) -> set[str]:
         if match.start() < at:  # a class inside the previous one, whose text was already searched
             continue
         at = end_of_block(text, match.end())
-        if any(_METHOD.search(part) for part in _level(text[match.end() : at])):
+        if any(re.search(_METHOD, part) for part in _level(text[match.end() : at])):
             found.add(match[1])
     return found
 

@@ -17,7 +17,7 @@ from epg.documents.xml_file import Element, load_xml
 from epg.models.folders import entries
 from epg.source import Span
 
-_INDEX = re.compile(r"[0-9]{1,9}")
+_INDEX = r"[0-9]{1,9}"
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ def load_model_description(path: Path, diagnostics: Diagnostics) -> ExportConfig
     for element in variables.children if variables else []:
         direction = element.attributes.get("causality", "")
         reference = element.attributes.get("valueReference", "")
-        if direction not in ("input", "output") or not _INDEX.fullmatch(reference):
+        if direction not in ("input", "output") or not re.fullmatch(_INDEX, reference):
             continue
         kind = element.children[0].name.lower() if element.children else "real"
         unit = element.children[0].attributes.get("unit", "") if element.children else ""
@@ -120,7 +120,7 @@ def _port(element: Element) -> ConfiguredPort | None:
         element.text_of("physical", "unit", "name"),
         element.text_of("description"),
         element.text_of("storage", "name"),
-        int(index) if _INDEX.fullmatch(index) else -1,
+        int(index) if re.fullmatch(_INDEX, index) else -1,
         element.span,
     )
 

@@ -36,7 +36,7 @@ STUBS = {
     "TimeEvent": "timeevent()",
 }
 _STUB_NAME = re.compile(rf"(?:XX|YY|[A-Z]\w*?_?)?({'|'.join(sorted(STUBS, key=len, reverse=True))})(?=[a-z_]|$)")
-_TRIVIAL_BODY = re.compile(r"\s*(?:return\s*\(?\s*(?:0(?:\.0*)?|XXFALSE|false)\s*\)?\s*;\s*)?")
+_TRIVIAL_BODY = r"\s*(?:return\s*\(?\s*(?:0(?:\.0*)?|XXFALSE|false)\s*\)?\s*;\s*)?"
 _DIRECTIVE = re.compile(r"^[ \t]*#[ \t]*(warning|error)\b[ \t]*([^\n]*)", re.MULTILINE)
 
 _CALLED = re.compile(r"(?<!\w)([A-Za-z_]\w{0,255})\s{0,80}\(", re.ASCII)
@@ -241,7 +241,7 @@ class _Calls:
             function.name: (code, function)
             for code, function in reachable
             if _STUB_NAME.match(function.name)
-            and _TRIVIAL_BODY.fullmatch(code.body(function))
+            and re.fullmatch(_TRIVIAL_BODY, code.body(function))
             and function.result != "void"
         }
         self._declarations = _Declarations(linked)

@@ -39,8 +39,8 @@ _STORED, _DEFLATED = 0, 8  # methods of compression: APPNOTE.TXT, 4.4.5; FMI 2.0
 _METHODS = {9: "deflate64", 12: "bzip2", 14: "LZMA", 20: "Zstandard", 93: "Zstandard", 95: "XZ", 98: "PPMd"}
 _END = struct.Struct("<4s4H2LH")  # end of central directory record: APPNOTE.TXT 6.3.10, section 4.3.16
 _END64_LOCATOR = b"PK\x06\x07"  # zip64 end of central directory locator: section 4.3.15
-_BAD_NAME = re.compile(r'[\\:*?"<>|;$\[\]]')  # not allowed in names of files on Windows, or in lists of CMake
-_RESERVED = re.compile(r"(?i)(con|prn|aux|nul|com\d|lpt\d)(\..*)?$")
+_BAD_NAME = r'[\\:*?"<>|;$\[\]]'  # not allowed in names of files on Windows, or in lists of CMake
+_RESERVED = r"(?i)(con|prn|aux|nul|com\d|lpt\d)(\..*)?$"
 
 
 @dataclass(frozen=True)
@@ -221,9 +221,9 @@ def _entries(archive: zipfile.ZipFile) -> tuple[dict[str, zipfile.ZipInfo], set[
 
 def _may_be_unpacked(name: str, parts: list[str]) -> bool:
     """True if, on every operating system, a file of this name can be unpacked and stays inside its folder."""
-    if not name.isprintable() or _BAD_NAME.search(name):
+    if not name.isprintable() or re.search(_BAD_NAME, name):
         return False
     return all(
-        part not in ("", ".", "..") and part == part.rstrip(". ") and not _RESERVED.match(part) and len(part) <= 100
+        part not in ("", ".", "..") and part == part.rstrip(". ") and not re.match(_RESERVED, part) and len(part) <= 100
         for part in parts
     )

@@ -18,7 +18,7 @@ from epg.models.neighbours import Neighbours, all_alike
 from epg.source import Span
 
 #: headers of an export that a model needs only if it calls their functions
-_OPTIONAL = re.compile(r"motionprofiles|eulerangles|\w*(table2d|matrix|inverse|funcs)\w*", re.IGNORECASE)
+_OPTIONAL = r"motionprofiles|eulerangles|\w*(table2d|matrix|inverse|funcs)\w*"
 
 
 @dataclass(frozen=True)
@@ -157,7 +157,7 @@ class Headers:
 
 
 def _is_optional(name: str) -> bool:
-    return _OPTIONAL.fullmatch(_base(name).removesuffix(".h")) is not None
+    return re.fullmatch(_OPTIONAL, _base(name).removesuffix(".h"), re.IGNORECASE) is not None
 
 
 def _base(name: str) -> str:

@@ -21,12 +21,11 @@ HEAP = words(
     unordered_set stack queue priority_queue shared_ptr unique_ptr function any regex thread async future
     """
 )
-_TYPE = re.compile(
+_TYPE = (
     rf"(?<![\w.>])(?P<std>std\s{{0,9}}::\s{{0,9}})?\b(?P<type>{'|'.join(sorted(FILES | HEAP))})\b"
-    r"(?P<rest>\s{0,9}<[^;(){}]{0,200}>)?(?=\s{1,80}[A-Za-z_]\w{0,255}\s{0,80}[;({=,)]|\s{0,9}[({])",
-    re.ASCII,
+    r"(?P<rest>\s{0,9}<[^;(){}]{0,200}>)?(?=\s{1,80}[A-Za-z_]\w{0,255}\s{0,80}[;({=,)]|\s{0,9}[({])"
 )
-_USING = re.compile(r"\busing\s{1,80}namespace\s{1,80}std\s{0,80};")
+_USING = r"\busing\s{1,80}namespace\s{1,80}std\s{0,80};"
 _WORD = re.compile(r"\w+$")
 _BEFORE_CALLS = words("return else do case throw new delete goto and or not xor co_return co_await sizeof")
 
@@ -45,8 +44,8 @@ def library_uses(code: Code, function: Function) -> Iterator[Use]:
     if code.file.path.suffix.lower() == ".c":
         return
     text = code.file.code
-    everywhere = _USING.search(text) is not None
-    for match in _TYPE.finditer(text, function.body_start, function.body_end):
+    everywhere = re.search(_USING, text) is not None
+    for match in re.compile(_TYPE, re.ASCII).finditer(text, function.body_start, function.body_end):
         if match["std"] or everywhere:
             yield Use(match["type"], match.start(), match.end("type"))
 

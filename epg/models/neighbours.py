@@ -37,11 +37,11 @@ SOURCE_FOLDERS = ("src", "source", "sources")
 
 _SHARED = "common"  # the folder of a C++ export with files that do not depend on the model
 _SOURCES = (".c", ".cpp", ".cc", ".cxx")
-_ENTRY_POINT = re.compile(
+_ENTRY_POINT = (
     r"CalculateSubmodel\w{0,80}\s{0,80}\([^();{]{0,500}\)\s{0,80}\{|::\s{0,80}CopyInputsToVariables\s{0,80}\("
 )
 _BLANK = re.compile(r"\s+")
-_NOT_IN_LISTS = re.compile(r"[\[\]$;\"\\|]")  # characters that a list of CMake cannot hold
+_NOT_IN_LISTS = r"[\[\]$;\"\\|]"  # characters that a list of CMake cannot hold
 
 
 class Neighbours:
@@ -194,7 +194,7 @@ def holds_model(folder: Path) -> bool:
     if not sources and not any(name.endswith(".h") for name in names):
         return any(name.endswith("tokens.xml") for name in names)
     files = (_read(path) for path in sources[:MAX_SOURCES])
-    return any(file is not None and _ENTRY_POINT.search(file.text) for file in files)
+    return any(file is not None and re.search(_ENTRY_POINT, file.text) for file in files)
 
 
 def all_alike(paths: Sequence[Path]) -> bool:
@@ -238,4 +238,4 @@ def _siblings(parent: Path) -> tuple[list[Path], str]:
 
 def _is_nameable(name: str) -> bool:
     """True if a list of CMake can hold a folder of this name."""
-    return name.isprintable() and not _NOT_IN_LISTS.search(name)
+    return name.isprintable() and not re.search(_NOT_IN_LISTS, name)

@@ -9,7 +9,7 @@ from epg.diagnostics import Diagnostics
 from epg.documents.source_file import SourceFile
 
 _MARK = re.compile(r"^(?:<{7} |={7}$|>{7} )", re.MULTILINE)
-_OTHER_BRANCH = re.compile(r"^[ \t]*#[ \t]*(?:else|elif)", re.MULTILINE)
+_OTHER_BRANCH = r"^[ \t]*#[ \t]*(?:else|elif)"
 
 
 def is_whole(file: SourceFile, diagnostics: Diagnostics) -> bool:
@@ -22,7 +22,9 @@ def is_whole(file: SourceFile, diagnostics: Diagnostics) -> bool:
         diagnostics.error("model-incomplete", file.span(mark.start(), mark.end()), message, hint=hint)
         return False
     # With #else, each branch can open a brace, and one closing brace can belong to all of them: do not count braces.
-    if file.code.count("{") > file.code.count("}") and not _OTHER_BRANCH.search(file.without_comments):
+    if file.code.count("{") > file.code.count("}") and not re.search(
+        _OTHER_BRANCH, file.without_comments, re.MULTILINE
+    ):
         end = len(file.text.rstrip())
         message = f"a '}}' is missing at the end of '{name}': the file is cut off"
         hint = "copy the whole file, or export the model again"

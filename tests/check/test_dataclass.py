@@ -67,6 +67,8 @@ ACTIONS: dict[str, Callable[[Any, Any, Any], object]] = {
     "values": lambda p, b, c: [vars(p(1, "a", [2], 3)), vars(b(1)), vars(c(4)), p(3).double, p(3).kind],
     "too few": lambda p, b, c: p(),
     "too many": lambda p, b, c: c(1, 2, 3),
+    "twice": lambda p, b, c: p(1, values=2),
+    "right after a mistake": lambda p, b, c: [observed(p), repr(p(1)), repr(p(2, items=[3]))],
     "unknown name": lambda p, b, c: p(1, other=2),
     "equal": lambda p, b, c: [p(1) == p(1), p(1) == p(2), p(1) == p(1, hidden=5), p(1) == b(1, "pin"), p(1) == 1],
     "own lists": lambda p, b, c: p(1).items is p(1).items,
@@ -111,11 +113,13 @@ def test_methods_of_the_class_are_kept() -> None:
     assert hash(Name("a")) == hash(Name("a"))
 
 
-def test_no_method_is_compiled_before_the_first_object(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_method_is_compiled_for_a_class_with_many_objects(monkeypatch: pytest.MonkeyPatch) -> None:
     compiled = []
     monkeypatch.setattr(quick, "_init", lambda cls, make=quick._init: compiled.append(cls) or make(cls))
     pin, button, _ = made(quick.dataclass)
-    assert compiled == []
-    button(1), button(2)
+    for number in range(2 * quick.MANY):
+        assert button(number, items=[number]) == button(number, "button", [number], pressed=False)
+        assert button(number).items == []
     assert compiled == [button]
     assert pin(1).values == 1
+    assert compiled == [button]

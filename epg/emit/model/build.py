@@ -8,7 +8,6 @@ from pathlib import Path
 
 from epg.dataclass import dataclass
 from epg.emit.model.copies import copies, copy_name
-from epg.emit.model.fmu_code import fmu_folder
 from epg.models.details import CFunctionExport, CppClassExport, FmuExport, HandWritten
 from epg.models.model import Model
 
@@ -44,6 +43,8 @@ def model_build(model: Model, name: str, parameters: Mapping[str, float] | None 
     generated_directories: tuple[str, ...] = ()
     details = model.details
     if isinstance(details, FmuExport):
+        from epg.emit.model.fmu_code import fmu_folder
+
         folder = fmu_folder(name)
         if details.packed:
             own += [f"{folder}/{unit}" for unit in details.units]

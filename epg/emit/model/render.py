@@ -13,8 +13,6 @@ from typing import Any
 import jinja2
 
 from epg.emit.model.copies import copies, copy_name
-from epg.emit.model.fmu_code import fmu_code, fmu_files
-from epg.emit.model.tokens_code import helper_texts, tokens_code
 from epg.emit.template import environment
 from epg.emit.text import Code, comment
 from epg.models.details import CFunctionExport, CppClassExport, FmuExport, HandWritten, TokensExport
@@ -56,9 +54,13 @@ def render(model: Model, name: str, values: Mapping[str, float], instances: int,
         context = common | _cpp_class(model, details, name, values)
         files[f"{name}_export.cpp"] = env.get_template("cpp_class.cpp.j2").render(context)
     elif isinstance(details, TokensExport):
+        from epg.emit.model.tokens_code import helper_texts, tokens_code
+
         context = common | tokens_code(model, details, values) | {"helpers": helper_texts(details.functions)}
         files[f"{name}_export.c"] = env.get_template("tokens.c.j2").render(context)
     elif isinstance(details, FmuExport):
+        from epg.emit.model.fmu_code import fmu_code, fmu_files
+
         context = common | fmu_code(model, details, name, values, instances)
         files[f"{name}_export.c"] = env.get_template("fmu.c.j2").render(context)
         files[f"{name}_names.h"] = env.get_template("fmu_names.h.j2").render(context)
