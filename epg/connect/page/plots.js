@@ -58,7 +58,7 @@ function bands(place, unit, signals, indices) {
 export function newPlot(place, unit, series, more) {
   const style = getComputedStyle(document.documentElement);
   const text = style.getPropertyValue("--muted").trim();
-  const axis = { stroke: text, grid: { stroke: style.getPropertyValue("--line").trim() } };
+  const axis = { stroke: text, grid: { stroke: style.getPropertyValue("--line").trim(), width: 1 } };
   const options = {
     width: place.clientWidth,
     height: HEIGHT,

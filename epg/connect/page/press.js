@@ -4,9 +4,10 @@
 
 let timer = 0;
 
-for (const name of ["pointerup", "pointercancel", "keyup", "blur"]) {
+for (const name of ["pointerup", "pointercancel", "keyup"]) {
   window.addEventListener(name, release, { capture: true });
 }
+window.addEventListener("blur", release); // not of elements: a press takes the focus from another one
 document.addEventListener("visibilitychange", release);
 
 function release() {

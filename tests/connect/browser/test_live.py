@@ -35,12 +35,25 @@ def page(jiwy: Any, open_page: Open, target: Target) -> Iterator[Any]:
 
 
 def enable(page: Any) -> None:
+    """Holds the button while another element has the focus; a click alone must have no effect."""
     button = page.get_by_role("button", name="Enable (hold)")
     button.click()
     page.wait_for_timeout(HOLD)
+    page.get_by_role("textbox", name="pan_subscriber").focus()
     assert page.get_by_role("tab", name="Live ○ disabled").is_visible(), "a click is too short"
     button.click(delay=HOLD)
     page.get_by_role("tab", name="Live ● enabled").wait_for()
+
+
+def stopped(page: Any) -> str:
+    """The position at which the axis stands still, in at most 5 s: it coasts, and this computer can be busy."""
+    place = page.locator(".live-signals .value").first
+    for _ in range(10):
+        position = str(place.inner_text())
+        page.wait_for_timeout(500)
+        if place.inner_text() == position:
+            return position
+    raise AssertionError("the axis moves")
 
 
 def test_a_robot_is_tuned_and_stopped_by_the_space_bar(jiwy: Any, page: Any) -> None:
@@ -121,11 +134,7 @@ def test_an_actuator_moves_while_its_button_is_held(page: Any) -> None:
     button = page.get_by_role("button", name="Move pwm_pan forwards")
     before = page.locator(".live-signals .value").first.inner_text()
     button.click(delay=800)
-    page.wait_for_timeout(600)
-    after = page.locator(".live-signals .value").first.inner_text()
-    assert before != after
-    page.wait_for_timeout(500)
-    assert page.locator(".live-signals .value").first.inner_text() == after, "it has stopped"
+    assert before != stopped(page)
 
 
 def test_a_release_is_heard_after_the_page_was_drawn_again(jiwy: Any, page: Any) -> None:
@@ -141,10 +150,7 @@ def test_a_release_is_heard_after_the_page_was_drawn_again(jiwy: Any, page: Any)
     page.wait_for_timeout(HOLD)
     assert page.get_by_role("tab", name="Live ○ disabled").is_visible(), "the press was too short"
     press_and_release(page.get_by_role("button", name="Move pwm_pan forwards"))
-    page.wait_for_timeout(600)
-    stopped = page.locator(".live-signals .value").first.inner_text()
-    page.wait_for_timeout(500)
-    assert page.locator(".live-signals .value").first.inner_text() == stopped
+    assert stopped(page)
 
 
 @pytest.mark.parametrize("end", ["close", "hide"])
