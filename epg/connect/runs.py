@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ from epg.connect.build.consent import Question, question_about, question_about_p
 from epg.connect.build.run import Build, configuration_of
 from epg.connect.places import Places
 from epg.connect.projects import Job
+from epg.connect.run.compare import ComparisonRun, Driven, comparison_commands
 from epg.connect.run.find_simulation import Simulation, simulations_of
 from epg.connect.run.flash import Boards, FlashRun, boards_for
 from epg.connect.run.program import ProgramRun, command_of, port_of
@@ -32,12 +33,19 @@ class Runs:
         self._changed = changed
         self._build, self._simulation = Build(changed), SimulationRun(changed)
         self._program, self._flash = ProgramRun(changed), FlashRun(changed)
+        self._comparison = ComparisonRun(changed)
         self._boards: Boards | None = None
         self._questions: dict[str, dict[str, Any] | None] = {}
 
     @property
     def _activities(self) -> dict[str, Activity]:
-        return {"build": self._build, "simulation": self._simulation, "program": self._program, "flash": self._flash}
+        return {
+            "build": self._build,
+            "simulation": self._simulation,
+            "program": self._program,
+            "flash": self._flash,
+            "comparison": self._comparison,
+        }
 
     @property
     def running(self) -> bool:
@@ -48,9 +56,10 @@ class Runs:
         """True while something runs that ends by itself, and that the user can expect to be completed."""
         return self.running and not self._program.is_running
 
-    def check_idle(self) -> None:
+    def check_idle(self, beside: str = "") -> None:
+        """Raises Refused while an activity runs, other than ``beside``."""
         for name, activity in self._activities.items():
-            if activity.is_running:
+            if activity.is_running and name != beside:
                 what = {"flash": "a board is being written"}.get(name, f"a {name} is running")
                 raise Refused(what, "wait for it, or cancel it", 409)
 
@@ -95,6 +104,28 @@ class Runs:
         self.check_idle()
         self._simulation = SimulationRun(self._changed)
         self._simulation.start(simulation, anyway=anyway)
+
+    def ask_to_compare(self, simulation: Simulation, agreed: str, *, anyway: bool = False) -> dict[str, Any] | None:
+        """The question before a comparison, as :meth:`ask`."""
+        configuration = configuration_of(simulation.job.request)
+        question = question_about(simulation.job, configuration, comparison_commands(simulation), anyway=anyway)
+        return self._ask("comparison", question, agreed, {})
+
+    def compare(self, simulation: Simulation, driven: Driven, by: Sequence[str], *, anyway: bool = False) -> None:
+        """Compares a running target with its simulation.  Raises Refused while another activity runs.
+
+        The target can be the program that runs.
+        """
+        self.check_idle(beside="program")
+        self._comparison = ComparisonRun(self._changed)
+        self._comparison.start(simulation, driven, by, anyway=anyway)
+
+    @property
+    def compared(self) -> dict[str, Any]:
+        """The curves of the last comparison.  Raises Refused."""
+        if self._comparison.compared is None:
+            raise Refused("nothing has been compared", "compare first", 409)
+        return self._comparison.compared
 
     def run_program(self, path: str, agreed: str, *, console: bool) -> None:
         """Runs a product of the last build in real time, if the user has agreed.  Raises Refused.
@@ -145,19 +176,27 @@ class Runs:
         return dict(found[0])
 
     def cancel(self) -> None:
+        """Cancels the running activity; of a program and its comparison, the comparison."""
+        if self._comparison.is_running:
+            self._comparison.cancel()
+        else:
+            self._cancel_all()
+
+    def close(self) -> None:
+        """Cancels all activities, and waits at most 10 s for their ends."""
+        self._cancel_all()
+        for activity in self._activities.values():
+            activity.wait(10)
+
+    def _cancel_all(self) -> None:
         for activity in self._activities.values():
             if activity.is_running:
                 activity.cancel()
 
-    def close(self) -> None:
-        """Cancels a running activity, and waits at most 10 s for its end."""
-        self.cancel()
-        for activity in self._activities.values():
-            activity.wait(10)
-
     def forget(self) -> None:
         self._build, self._simulation = Build(self._changed), SimulationRun(self._changed)
         self._program, self._flash = ProgramRun(self._changed), FlashRun(self._changed)
+        self._comparison = ComparisonRun(self._changed)
         self._boards = None
         self._questions = {}
 

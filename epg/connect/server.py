@@ -251,6 +251,8 @@ class _Handler(BaseHTTPRequestHandler):
             self._events()
         elif path == "api/live/capture":
             self._json(owner.session.live.recorded())
+        elif path == "api/live/comparison":
+            self._json(owner.session.runs.compared)
         elif path == "api/live/save":
             data = owner.session.live.save(query.get("what", ""), query.get("as", ""))
             self._send(200, "application/octet-stream", data)

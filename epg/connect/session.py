@@ -92,6 +92,7 @@ class Session:
             "generate": self._generate,
             "simulate": self._simulate,
             "flash": self._flash,
+            "compare": self._compare,
             "run": self._run,
             "done": lambda body: self.ended.set(),
         }
@@ -345,6 +346,19 @@ class Session:
         self._save({})
         self.runs.simulate(simulation, anyway=anyway)
 
+    def _compare(self, body: Body) -> None:
+        """Gives the setpoints of the running target since its enabling to its simulation, and compares both."""
+        self._check_ready(beside="program")
+        driven = self.live.driven()
+        simulation = find_simulation(self._opened().job, text(body, "simulation", ""))
+        anyway = boolean(body, "anyway")
+        if self.runs.ask_to_compare(simulation, text(body, "run", ""), anyway=anyway) is None:
+            application = self._opened().loaded.parts.application
+            wires = application.inputs if application is not None else ()
+            by = [f"inputs.{wire.port.name}" for wire in wires if wire.component.kind.communication == "subscribe"]
+            self._save({})
+            self.runs.compare(simulation, driven, by, anyway=anyway)
+
     def _run(self, body: Body) -> None:
         configuration = self._opened().loaded.parts.configuration
         used = configuration.communication.middlewares if configuration is not None else ()
@@ -369,9 +383,9 @@ class Session:
         proposed = all(problem["id"] == "unbound-input" and problem["port"] in proposals for problem in errors)
         return proposals if errors and proposed else {}
 
-    def _check_ready(self) -> None:
-        """Raises Refused if the target cannot be built now."""
-        self.runs.check_idle()
+    def _check_ready(self, beside: str = "") -> None:
+        """Raises Refused if the target cannot be built now.  An activity ``beside`` may run."""
+        self.runs.check_idle(beside)
         self._opened().check_conflict()
         job = self._opened().job
         if job.simulated and job.source_dir is None:

@@ -25,7 +25,8 @@ MOST = 4_000_000
 class History:
     """A sink of rows of ``count`` signals that keeps the newest ones, about ``most`` values.
 
-    ``begin`` is the time of the stream's start, in ns since 1970; 0 before the first row.
+    ``begin`` is the time of the stream's start, in ns since 1970; 0 before the first row.  ``newest`` is the time of
+    the newest row; None before the first one.
     """
 
     def __init__(self, count: int, most: int = MOST) -> None:
@@ -34,6 +35,7 @@ class History:
         self._kept = 0
         self._lock = threading.Lock()
         self.begin = 0
+        self.newest: float | None = None
 
     def write(self, rows: Iterable[Row]) -> None:
         times, values = array("d"), array("f")
@@ -44,6 +46,7 @@ class History:
             return
         with self._lock:
             self.begin = self.begin or time.time_ns() - round(times[-1] * 1e9)
+            self.newest = times[-1]
             self._blocks.append((times, values))
             self._kept += len(values)
             while self._kept > self._most and len(self._blocks) > 1:

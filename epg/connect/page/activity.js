@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What builds, simulations and other runs have in common: consent, progress, messages and log. Only one runs at a time.
+// What builds, simulations and other runs have in common: consent, progress, messages and log. Only one runs at a
+// time; a comparison may run beside the program that it compares.
 
 import { copyButton } from "./copy.js";
 import { openDialog } from "./dialog.js";
@@ -10,15 +11,15 @@ import { current, getJson } from "./server.js";
 import { attempt, draw, openTab, say, ui } from "./ui.js";
 
 /**
- * @typedef {"build" | "simulation" | "program" | "flash"} Name
+ * @typedef {"build" | "simulation" | "program" | "flash" | "comparison"} Name
  * @typedef {{lines: string[], fetching: boolean, open: boolean}} Log
  */
 
 /** @type {Name[]} */
-const NAMES = ["build", "simulation", "program", "flash"]; // keys of the state
+const NAMES = ["comparison", "build", "simulation", "program", "flash"]; // keys of the state
 
 /** @type {Record<Name, string>} */
-const TABS = { build: "build", simulation: "simulation", program: "build", flash: "build" };
+const TABS = { build: "build", simulation: "simulation", program: "build", flash: "build", comparison: "live" };
 
 /** @type {Record<string, Log>} */
 const logs = Object.fromEntries(NAMES.map((name) => [name, { lines: [], fetching: false, open: false }]));
@@ -34,7 +35,7 @@ export const running = (state) => NAMES.find((name) => state[name].state === "ru
 /**
  * Starts `action`. Before the first time, the user sees the commands, and may agree to them.
  * @param {Name} name
- * @param {"generate" | "simulate" | "run"} action
+ * @param {"generate" | "simulate" | "run" | "compare"} action
  * @param {object} body
  */
 export async function begin(name, action, body) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // "Live": a running target. Plots of its signals, its parameters, and the buttons that enable, move and stop it.
 
+import { comparisonPart } from "./comparison.js";
 import { swatch } from "./curves.js";
 import { h, id } from "./dom.js";
 import { icon } from "./icons.js";
@@ -42,7 +43,6 @@ export function livePanel(state) {
   if (!target) return [problemPart(state.live.problem), problemPart(refused), portsPart(state.live)];
   return [
     headPart(target),
-    faultPart(target),
     problemPart(refused),
     signalsPart(target),
     h("div.plots", { key: "plots", keep: true, shown: (place) => drawPlotsNow(place, target) }),
@@ -56,6 +56,7 @@ export function livePanel(state) {
       linesPart(),
     ),
     recordingPart(target, shownSignals(target), command),
+    comparisonPart(state, shownSignals(target)),
     timingPart(target),
   ];
 }
@@ -136,6 +137,7 @@ function headPart(target) {
       { key: "hint" },
       "The space bar stops. It is not an emergency stop, and does nothing while another window is in front.",
     ),
+    faultPart(target),
   );
 }
 

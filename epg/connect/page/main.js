@@ -8,6 +8,7 @@
 import { bars } from "./bars.js";
 import { followActivities } from "./activity.js";
 import { buildOutcome, programOutcome } from "./build.js";
+import { comparisonOutcome } from "./comparison.js";
 import { componentColumn } from "./components.js";
 import { drawDialog } from "./dialog.js";
 import { dock } from "./dock.js";
@@ -111,7 +112,13 @@ window.addEventListener("beforeunload", (event) => {
 
 listenForDrags(part("main"));
 listenForPresses(part("main"));
-const OUTCOMES = { build: buildOutcome, simulation: simulationOutcome, program: programOutcome, flash: flashOutcome };
+const OUTCOMES = {
+  build: buildOutcome,
+  simulation: simulationOutcome,
+  program: programOutcome,
+  flash: flashOutcome,
+  comparison: comparisonOutcome,
+};
 follow(() => {
   if (current() && !hasEnded()) {
     followActivities(current(), OUTCOMES);

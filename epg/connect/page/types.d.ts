@@ -98,6 +98,7 @@ interface StartState {
   simulation: SimulationRun;
   program: ProgramRun;
   flash: FlashRun;
+  comparison: ComparisonRun;
   live: Live;
   /** Null while EPG looks for them. */
   simulations: Simulations | null;
@@ -425,6 +426,11 @@ interface SimulationRun extends Activity {
   result: SimulationResult | null;
 }
 
+interface ComparisonRun extends Activity {
+  /** `changed` are the parameters that were changed in the target only. */
+  result: { number: number; changed: string[] } | null;
+}
+
 /** Values that are not finite are null. */
 interface SimulationResult {
   passed: boolean;
@@ -491,6 +497,8 @@ interface Actions {
   generate: { run?: string; anyway?: boolean };
   /** "accept" agrees to the proposed wires of the question. */
   simulate: { run?: string; anyway?: boolean; accept?: boolean; simulation?: string };
+  /** Compares the running target with its simulation. */
+  compare: { run?: string; anyway?: boolean; simulation?: string };
   /** Runs a product of the last build in real time. */
   run: { path: string; run?: string };
   /** Without "board", looks for boards; with it, writes the last product to this board. */

@@ -25,6 +25,7 @@ from typing import Any
 from epg import bootstrap
 from epg.connect.body import Refused
 from epg.connect.projects import Job
+from epg.connect.run.compare import Driven
 from epg.live import client as protocol
 from epg.live.buckets import Bucket, Buckets
 from epg.live.capture import Recorded, progress_of, recorded_of
@@ -33,7 +34,7 @@ from epg.live.faults import Faults
 from epg.live.found import ports
 from epg.live.history import History
 from epg.live.port import Port, PortError
-from epg.live.rows import CsvFile, McapFile, Recording, Sink, Stream
+from epg.live.rows import CsvFile, McapFile, Recording, Row, Sink, Stream
 
 PERIOD = 0.05
 """Seconds between two events with points."""
@@ -136,6 +137,10 @@ class Live:
         """The last recording of every cycle: names, times, and the values of each signal.  Raises Refused."""
         return self._now().recorded()
 
+    def driven(self) -> Driven:
+        """The motion since the page has seen the target being enabled.  Raises Refused."""
+        return self._now().driven()
+
     def state(self, program: str) -> dict[str, Any]:
         """The connection for the page's state.  ``program`` is the terminal of a program that runs, or empty."""
         connected = self._connected
@@ -170,6 +175,11 @@ class _Connection:
         self._state = "enabled=0"
         self._listeners: list[_Listener] = []
         self._over = threading.Event()
+        self._clock: float | None = None  # the monotonic time at the first row of the stream
+        self._enabled_at: float | None = None  # the time in the stream at which the target was enabled
+        self._disabled_at = math.inf
+        self._newest: dict[str, float] = {}  # the setpoints that were sent last
+        self._setpoints: list[tuple[float, str, float]] = []  # those since enabling, with their times in the stream
         self._capture: dict[str, Any] = {"state": "none", "rows": 0, "wanted": 0, "number": 0}
         self._recorded: Recorded | None = None
         self._follower: threading.Thread | None = None
@@ -234,7 +244,10 @@ class _Connection:
     def command(self, line: str) -> list[str]:
         self._check(line.split(" ")[0])
         try:
+            now = self._now()
             answer = self._client.command(line)
+            if answer[-1] == "ok setpoint":
+                self._keep_setpoints(line, now)
             if line.startswith("set "):
                 self._parameters = self._client.parameters()
                 self._changed("")
@@ -301,6 +314,18 @@ class _Connection:
             sink.close()
             return path.read_bytes()
 
+    def driven(self) -> Driven:
+        begin = self._enabled_at
+        if begin is None:
+            message = "the target was not enabled while the page was connected"
+            raise Refused(message, "stop it, enable it, move it, and compare then", 409)
+        rows = [Row(row.time - begin, row.values) for row in self._history.rows(begin) if row.time < self._disabled_at]
+        if not rows or rows[0].time > 1.0:
+            raise Refused("the values since enabling are not kept any more", "stop and enable the target again", 409)
+        setpoints = [(time - begin, name, value) for time, name, value in self._setpoints]
+        changed = tuple(each.name for each in self._parameters if each.value != each.generated)
+        return Driven(tuple(self._names), rows, setpoints, changed)
+
     def recorded(self) -> dict[str, Any]:
         recorded = self._last_recorded()
         columns = zip(*(row.values for row in recorded.rows), strict=True)
@@ -315,6 +340,26 @@ class _Connection:
         self._over.set()
         self._client.stop()
         self._port.close()
+
+    def _now(self) -> float:
+        """The time in the stream."""
+        return time.monotonic() - self._clock if self._clock is not None else 0.0
+
+    def _keep_setpoints(self, line: str, now: float) -> None:
+        """Keeps the setpoints of a line for a comparison with the simulation."""
+        known = self._client.description.setpoints
+        found = {name if name in known else f"/{name}": float(value) for name, value in words_of(line)}
+        self._newest |= found
+        if now < self._disabled_at:
+            self._setpoints += [(now, name, value) for name, value in found.items()]
+
+    def _keep_state(self, enabled: bool) -> None:
+        now = self._now()
+        if enabled:
+            self._enabled_at, self._disabled_at = now, math.inf
+            self._setpoints = [(now, name, value) for name, value in self._newest.items()]
+        elif self._enabled_at is not None:
+            self._disabled_at = min(self._disabled_at, now)
 
     def _last_recorded(self) -> Recorded:
         recorded = self._recorded
@@ -349,6 +394,10 @@ class _Connection:
     def _collect(self) -> None:
         while not self._over.wait(PERIOD):
             self._recording.drain()
+            if self._history.newest is not None:
+                # The first row arrived at the latest when the quickest row says so.
+                clock = time.monotonic() - self._history.newest
+                self._clock = clock if self._clock is None else min(self._clock, clock)
             found = self._buckets.take()
             stream = self._recording.stream
             for listener in list(self._listeners):
@@ -356,7 +405,9 @@ class _Connection:
 
     def _told(self, line: str) -> None:
         if line.startswith("state "):
-            self._state = line.removeprefix("state ")
+            before, self._state = self._state, line.removeprefix("state ")
+            if ("enabled=1" in before) != ("enabled=1" in self._state):
+                self._keep_state("enabled=1" in self._state)
         lost = line.removeprefix("lost ") if line.startswith("lost ") else ""
         for listener in list(self._listeners):
             listener.add_line(line)

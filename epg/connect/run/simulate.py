@@ -52,7 +52,7 @@ class SimulationRun(Activity):
         outcome, made = build(self, simulation.job, anyway=anyway)
         if outcome.state != "done":
             return outcome
-        program = _program(simulation, made)
+        program = program_of(simulation, made)
         if program is None:
             text = f"the build has not made the program '{simulation.executable}'"
             return Outcome("failed", [Message("error", text, id="simulation-failed")])
@@ -86,7 +86,7 @@ def commands_of(simulation: Simulation) -> tuple[tuple[str, ...], ...]:
     return (simulate_command(build_dir / simulation.executable, simulation.scenario, build_dir),)
 
 
-def _program(simulation: Simulation, made: list[Made]) -> Path | None:
+def program_of(simulation: Simulation, made: list[Made]) -> Path | None:
     """The program of the simulation among the products of its build.  Zephyr's has a name of its own."""
     paths = [each.path for each in made]
     return next((path for path in paths if path.stem == simulation.executable), paths[0] if paths else None)

@@ -17,6 +17,7 @@ from .axe import violations
 
 Open = Callable[..., Any]
 HOLD = 700  # milliseconds
+PATIENT = 120_000  # milliseconds for a build on a computer with high load
 
 
 @pytest.fixture
@@ -167,3 +168,40 @@ def test_a_page_that_is_gone_stops_the_robot(jiwy: Any, page: Any, target: Targe
         assert time.monotonic() < begin + LEASE + LATE
         time.sleep(0.01)
     assert jiwy.epg.state()["live"]["target"]["state"]["fault"] == "operator"
+
+
+def test_a_program_that_the_page_runs_is_compared_with_its_simulation(jiwy: Any, open_page: Open) -> None:
+    page = open_page(jiwy.address)
+
+    def agree() -> None:
+        """Agrees to run commands, if the page asks."""
+        page.wait_for_timeout(1500)
+        asked = page.get_by_role("dialog", name="Run these commands?")
+        if asked.is_visible():
+            asked.get_by_role("button", name="Run").click()
+
+    page.get_by_role("button", name="Generate").click()
+    agree()
+    page.get_by_role("button", name="Run jiwy_host in real time").click(timeout=PATIENT)
+    agree()
+    page.get_by_text("jiwy_host runs in real time").wait_for()
+    page.get_by_role("tab", name="Live").click()
+    page.get_by_role("button", name="Connect", exact=True).click()
+    page.get_by_role("button", name="Larger").click()
+    page.locator(".live-head").get_by_role("button", name="Stop").click()
+    page.get_by_role("tab", name="Live ○ disabled").wait_for()
+    enable(page)
+    page.wait_for_timeout(3000)  # it is homing
+    page.get_by_role("textbox", name="pan_subscriber").fill("0.5")
+    page.get_by_role("textbox", name="pan_subscriber").press("Enter")
+    page.wait_for_timeout(1500)
+    page.locator(".live-head").get_by_role("button", name="Stop").click()
+    page.get_by_role("button", name="Compare").click()
+    agree()
+    page.get_by_role("img", name="Target and simulation: inputs.position_pan").wait_for(timeout=PATIENT)
+    difference = page.get_by_text("inputs.position_pan simulated, RMS difference").inner_text()
+    assert float(difference.split()[-2]) < 0.1
+    assert violations(page) == []
+    assert jiwy.epg.state()["program"]["state"] == "running", "the comparison has not ended the program"
+    jiwy.epg.post("live/disconnect")
+    jiwy.epg.post("cancel")
