@@ -71,10 +71,10 @@ async function fetchCompared(result) {
   if (!result) return;
   try {
     compared = await getJson("api/live/comparison");
+    draw();
   } catch {
-    of = null; // EPG has ended, or another comparison has begun
+    // EPG has ended, or another comparison has begun, and the state says so
   }
-  draw();
 }
 
 function resultPart(target, { changed }, chosen) {

@@ -154,10 +154,10 @@ async function fetchRecorded(target) {
       return { name, unit: target.signals[index]?.unit ?? "", colour: colour(index), values: columns[column] };
     });
     recorded = { times, mark: triggered, curves };
+    draw();
   } catch {
-    fetched = 0; // the connection has ended
+    // the connection has ended, and the state says so
   }
-  draw();
 }
 
 /** @param {import("./curves.js").Curves} shown */
