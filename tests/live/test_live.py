@@ -240,3 +240,13 @@ def test_the_space_bar_disables_on_the_screen(target: Target) -> None:
     _, status = os.waitpid(process, 0)
     assert os.waitstatus_to_exitcode(status) == 0
     assert not target.is_enabled()
+
+
+def test_a_fault_is_said_in_words(target: Target) -> None:
+    commands = [word for line in ("disable", "tilt_subscriber=-0.2", "enable") for word in ("--send", line)]
+    done = live(target.port, *commands, "--signals", "none", "--duration", "3")
+    assert done.returncode == 0, done.stderr
+    assert (
+        "Fault 'stall' of guard_tilt: a driven motor gave no counts: the encoder is dead, or the motor" in done.stderr
+    )
+    assert "hint: Look at the cables and the supply of motor and encoder, free the axis" in done.stderr
