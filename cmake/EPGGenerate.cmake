@@ -6,8 +6,9 @@
 # this computer, and they do not.
 #
 # The stamp compares contents, not times: an upgraded wheel, another branch or an unpacked archive can bring changed
-# files with old times.  MD5 is enough to notice edits, and faster than SHA-256; the digest does not protect against an
-# attacker.  While the stamp is valid, Python is neither searched nor started, and no generated file is written.
+# files with old times.  For EPG's own code it compares contents only if a size or a time differs.  MD5 is enough to
+# notice edits, and faster than SHA-256; the digest does not protect against an attacker.  While the stamp is valid,
+# Python is neither searched nor started, and no generated file is written.
 #
 # The first call for which Python must start also brings the other targets up to date of which a file has changed since
 # the last configure run.  The record runs.cmake has their arguments.
@@ -230,26 +231,61 @@ function(_epg_fingerprint result)
     _epg_python_folder(python)
     _epg_data_folder(data)
     set(files "")
+    set(record "")
     if(data STREQUAL "${python}/_data")
       file(GLOB files "${python}/../epg-*.dist-info/RECORD" "${python}/../epg-*.dist-info/METADATA")
     endif()
     if(NOT files)
-      file(GLOB_RECURSE files "${python}/*")
-      list(FILTER files INCLUDE REGEX "\\.(py|j2)$")
-      list(FILTER files EXCLUDE REGEX "/epg/(connect|edit|graph|ros|simulate|tools)/") # `epg generate` imports none of these
-      file(GLOB schemas "${data}/schemas/*.json")
-      list(APPEND files ${schemas})
+      set(record "${CMAKE_BINARY_DIR}/CMakeFiles/epg/generator.txt")
+      set(patterns "${data}/schemas/*.json")
+      # the folders of all modules and templates that `epg generate` can read
+      foreach(folder . catalog check cli documents emit emit/model emit/model/templates emit/templates messages models resolve system)
+        list(APPEND patterns "${python}/${folder}/*.py" "${python}/${folder}/*.j2")
+      endforeach()
+      file(GLOB files ${patterns})
     endif()
-    set(text "${CMAKE_CURRENT_FUNCTION_LIST_DIR}")
-    foreach(file IN LISTS files)
-      file(MD5 "${file}" hash)
-      string(APPEND text "\n${hash}")
-    endforeach()
-    string(SHA256 fingerprint "${text}")
+    _epg_hash_of_files(fingerprint "${record}" ${files})
     set_property(GLOBAL PROPERTY _EPG_FINGERPRINT "${fingerprint}")
     set_property(DIRECTORY "${CMAKE_SOURCE_DIR}" APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${files})
   endif()
   set(${result} "${fingerprint}" PARENT_SCOPE)
+endfunction()
+
+# _epg_hash_of_files(<result> <record> <file>...)
+#
+# Sets <result> to a hash of the names and contents of files.
+#   <record>  a file that is written with the hash, so that the next run need not read all contents: the hash is still
+#             valid if all files have the same names and sizes, and none is newer than the record; "" for no record
+function(_epg_hash_of_files result record)
+  if(record)
+    set(sizes "${ARGN}\n")
+    set(newer FALSE)
+    foreach(file IN LISTS ARGN)
+      file(SIZE "${file}" size)
+      string(APPEND sizes " ${size}")
+      if("${file}" IS_NEWER_THAN "${record}")
+        set(newer TRUE)
+      endif()
+    endforeach()
+    string(SHA256 sizes "${sizes}")
+    if(NOT newer)
+      file(READ "${record}" known)
+      if(known MATCHES "^${sizes} ([0-9a-f]+)$")
+        set(${result} "${CMAKE_MATCH_1}" PARENT_SCOPE)
+        return()
+      endif()
+    endif()
+  endif()
+  set(text "")
+  foreach(file IN LISTS ARGN)
+    file(MD5 "${file}" hash)
+    string(APPEND text "${file} ${hash}\n")
+  endforeach()
+  string(SHA256 hash "${text}")
+  if(record)
+    file(WRITE "${record}" "${sizes} ${hash}")
+  endif()
+  set(${result} "${hash}" PARENT_SCOPE)
 endfunction()
 
 # _epg_configure_depends()

@@ -24,8 +24,9 @@ endfunction()
 #   <name>    the target, for the message
 function(_epg_check_needs result name)
   get_property(reported GLOBAL PROPERTY EPG_REPORTED_TOOLS)
+  get_property(programs GLOBAL PROPERTY EPG_PROGRAMS)
   set(needed ${EPG_NEEDS})
-  list(REMOVE_ITEM needed ${reported})
+  list(REMOVE_ITEM needed ${reported} ${programs})
   _epg_sdks_to_find(needed ${needed})
   _epg_problems(missing text ${needed})
   if(missing)
@@ -69,13 +70,16 @@ endfunction()
 # _epg_sdks_to_find(<result> <tool>...)
 #
 # Sets <result> to the tools that EPG must find.  CMake finds programs itself.  An SDK whose "target" exists is found
-# already.  The project can have a copy of a tool.
+# already.  The project can have a copy of a tool.  The global property EPG_PROGRAMS gets the names of the programs.
 function(_epg_sdks_to_find result)
   set(sdks "")
   foreach(tool IN LISTS ARGN)
     _epg_tool_files(file "${tool}")
     file(READ "${file}" json)
     string(JSON programs ERROR_VARIABLE no_program GET "${json}" programs)
+    if(NOT no_program)
+      set_property(GLOBAL APPEND PROPERTY EPG_PROGRAMS "${tool}")
+    endif()
     string(JSON target ERROR_VARIABLE no_target GET "${json}" target)
     _epg_is_in_project(in_project "${json}")
     if(no_program AND (no_target OR NOT TARGET "${target}") AND NOT in_project)

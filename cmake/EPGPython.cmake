@@ -117,6 +117,10 @@ endfunction()
 # Sets <result> to the absolute paths of the user's folders of targets: the list in the variable EPG_TARGETS_PATH, else
 # the paths in the environment variable of this name.
 function(_epg_user_folders result)
+  if(NOT EPG_TARGETS_PATH AND "$ENV{EPG_TARGETS_PATH}" STREQUAL "")
+    set(${result} "" PARENT_SCOPE)
+    return()
+  endif()
   set(folders "${EPG_TARGETS_PATH}")
   if(NOT folders)
     file(TO_CMAKE_PATH "$ENV{EPG_TARGETS_PATH}" folders)
@@ -194,8 +198,13 @@ endfunction()
 # _epg_check_folder_names()
 #
 # Stops with an error if the path of the source folder, of the build folder or of EPG contains a text with a special
-# meaning for CMake, Ninja or Make.  epg/check/names.py has the same rules.
+# meaning for CMake, Ninja or Make.  epg/check/names.py has the same rules.  Each source folder is checked once.
 function(_epg_check_folder_names)
+  get_property(checked DIRECTORY PROPERTY _EPG_CHECKED_FOLDER_NAMES)
+  if(checked STREQUAL CMAKE_CURRENT_SOURCE_DIR) # folders below inherit the property
+    return()
+  endif()
+  set_property(DIRECTORY PROPERTY _EPG_CHECKED_FOLDER_NAMES "${CMAKE_CURRENT_SOURCE_DIR}")
   _epg_data_folder(data)
   foreach(folder "${CMAKE_CURRENT_SOURCE_DIR}" "${CMAKE_BINARY_DIR}" "${data}")
     set(problem "")
