@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# The CMake target <name>_connect, which opens a target in a browser: `epg connect` with the arguments of
+# The CMake targets <name>_connect and <name>_live, which open a target in a browser: `epg connect` with the arguments of
 # epg_add_target().
 
 # _epg_connect_target(<name> <argument>...)
@@ -11,15 +11,49 @@
 # The server runs inside a build, and may start another build in the same folder.  This works with Ninja and Make:
 # neither locks its files, and Ninja opens its log only when one of its own commands has ended.
 function(_epg_connect_target name)
-  _epg_connect_command(command "${name}" ${ARGN})
-  if(command MATCHES "[#<>]") # the name of a file has such a character, which a custom target does not support
+  set_property(GLOBAL PROPERTY EPG_CONNECT_${name} "${ARGN}")
+  _epg_page_target("${name}_connect" "${name}" "Connecting the ports of ${name}; Ctrl-C ends this")
+  file(REMOVE "${CMAKE_BINARY_DIR}/epg/${name}_connect.cmake")
+endfunction()
+
+# _epg_live_target(<name> [<executable>])
+#
+# Makes the CMake target <name>_live, which opens the page at the tab Live.  Does nothing for a target without
+# <name>_connect, and for a second executable of the target.
+#   <name>        the target
+#   <executable>  its program for this computer: it runs as long as the page's server
+function(_epg_live_target name)
+  get_property(has_page GLOBAL PROPERTY EPG_CONNECT_${name} SET)
+  if(NOT has_page OR TARGET "${name}_live")
     return()
   endif()
-  add_custom_target(${name}_connect
-    COMMAND ${command}
-    COMMENT "Connecting the ports of ${name}; Ctrl-C ends this"
+  if(ARGC GREATER 1)
+    _epg_page_target("${name}_live" "${name}" "Running ${ARGV1}; Ctrl-C ends it" --live --run "$<TARGET_FILE:${ARGV1}>")
+    add_dependencies("${name}_live" "${ARGV1}")
+  else()
+    _epg_page_target("${name}_live" "${name}" "Watching ${name}; Ctrl-C ends this" --live)
+  endif()
+endfunction()
+
+# _epg_page_target(<target> <name> <comment> [<option>...])
+#
+# Makes a CMake target that opens the page.
+#   <target>   the CMake target
+#   <name>     the target; _epg_connect_target() has noted its arguments
+#   <comment>  the text that the build prints
+#   <option>   more options of `epg connect`
+function(_epg_page_target target name comment)
+  get_property(arguments GLOBAL PROPERTY EPG_CONNECT_${name})
+  _epg_connect_command(command "${name}" ${arguments})
+  if(command MATCHES "[#<>]") # the name of a file has such a character, which a custom target does not support
+    set(script "${CMAKE_BINARY_DIR}/CMakeFiles/epg/${target}.cmake")
+    _epg_write_script("${script}" "${name}" ${command})
+    set(command "${CMAKE_COMMAND}" -P "${script}" --)
+  endif()
+  add_custom_target(${target}
+    COMMAND ${command} ${ARGN}
+    COMMENT "${comment}"
     WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" USES_TERMINAL VERBATIM)
-  file(REMOVE "${CMAKE_BINARY_DIR}/epg/${name}_connect.cmake")
 endfunction()
 
 # _epg_connect_script(<result> <name> <argument>...)
@@ -31,14 +65,31 @@ endfunction()
 #   <argument>  the arguments of `epg connect` that name the target's files
 function(_epg_connect_script result name)
   _epg_connect_command(command "${name}" ${ARGN})
+  set(script "${CMAKE_BINARY_DIR}/epg/${name}_connect.cmake")
+  _epg_write_script("${script}" "${name}" ${command})
+  set(${result} "${script}" PARENT_SCOPE)
+endfunction()
+
+# _epg_write_script(<script> <name> <word>...)
+#
+# Writes a CMake script that runs a command.  `cmake -P <script> -- <option>...` adds options to it.
+#   <script>  path of the script
+#   <name>    the target, for a comment
+#   <word>    the command
+function(_epg_write_script script name)
   set(words "")
-  foreach(word IN LISTS command)
+  foreach(word IN LISTS ARGN)
     string(APPEND words " [==[${word}]==]")
   endforeach()
-  set(script "${CMAKE_BINARY_DIR}/epg/${name}_connect.cmake")
-  file(WRITE "${script}" "# Opens target ${name} in a browser.\nexecute_process(COMMAND${words}\n"
-    "  WORKING_DIRECTORY [==[${CMAKE_CURRENT_SOURCE_DIR}]==])\n")
-  set(${result} "${script}" PARENT_SCOPE)
+  file(WRITE "${script}" "# Opens target ${name} in a browser.\n"
+    "set(options \"\")\n"
+    "foreach(index RANGE 4 31) # behind cmake -P <script> --\n"
+    "  if(index LESS CMAKE_ARGC)\n"
+    "    list(APPEND options \"\${CMAKE_ARGV\${index}}\")\n"
+    "  endif()\n"
+    "endforeach()\n"
+    "execute_process(COMMAND${words} \${options}\n"
+    "  WORKING_DIRECTORY [==[${CMAKE_CURRENT_SOURCE_DIR}]==] COMMAND_ERROR_IS_FATAL ANY)\n")
 endfunction()
 
 # _epg_connect_command(<result> <name> <argument>...)

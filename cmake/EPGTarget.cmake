@@ -5,7 +5,7 @@
 #
 # Makes the library EPG::<name> for a target.  The library itself contains the model, the tables and the runtime, which
 # need no SDK.  The port layer of the platform is compiled in each executable that links the library.  Also makes the
-# CMake target <name>_connect, which opens the target in a browser.
+# CMake targets <name>_connect and <name>_live, which open the target in a browser.
 #
 #   <name>          name of the target and of its library; its header is <name>.h
 #   TCF             the target configuration: a path, or the name of one of EPG's predefined configurations
@@ -24,7 +24,7 @@
 #
 # epg_add_executable(<executable> EPG::<name>)
 #
-# Makes an executable with EPG's own main().
+# Makes an executable with EPG's own main().  If it is for the host, <name>_live runs it.
 #   <executable>  name of the executable
 #   EPG::<name>   a library that epg_add_target() has made
 
@@ -120,6 +120,9 @@ function(epg_add_target name)
     return()
   endif()
   include("${EPG_PLATFORM_CMAKE}")
+  if(NOT EPG_PLATFORM STREQUAL "host") # a host program runs as part of <name>_live: see epg_add_executable()
+    _epg_live_target("${name}")
+  endif()
   # Zephyr chooses its compiler later, after it has read this target's devicetree.  It makes the libraries then.
   if(COMMAND _epg_${EPG_PLATFORM}_before_build)
     cmake_language(CALL _epg_${EPG_PLATFORM}_before_build "${name}" "${output}")

@@ -37,6 +37,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--port", type=int, default=0, help="port of the page's address; default: any free port")
     parser.add_argument("--no-browser", action="store_true", help="only print the address")
     parser.add_argument("--until-closed", action="store_true", help="end when the page is closed")
+    parser.add_argument("--live", action="store_true", help="open the page at the tab Live, for a target that runs")
+    parser.add_argument(
+        "--run",
+        type=Path,
+        metavar="PROGRAM",
+        help="with --live: run the target's program in real time, and connect to it",
+    )
     parser.add_argument("--terminal", action="store_true", help="ask in this terminal, without a browser")
 
 
@@ -49,6 +56,9 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         return 2
     if not 0 <= options.port <= 65535:
         sys.stderr.write("epg connect: --port must be from 0 to 65535\n")
+        return 2
+    if (options.terminal and options.live) or (options.run is not None and not options.live):
+        sys.stderr.write("epg connect: --run needs --live, and --live needs the page, not --terminal\n")
         return 2
     folder = Path(os.path.abspath(options.folder or "."))
     system = folder if is_system(folder) else None
@@ -72,7 +82,42 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         from epg.connect.terminal.dialog import run as run_terminal
 
         return run_terminal(session, sys.stdin, sys.stdout)
-    return _serve(session, options)
+    if not options.live:
+        return _serve(session, options)
+    try:
+        _go_live(session, options.run, diagnostics)
+        diagnostics.stop_if_errors()
+        return _serve(session, options)
+    finally:
+        session.runs.close()
+
+
+def _go_live(session: Session, program: Path | None, diagnostics: Diagnostics) -> None:
+    """Lets the page begin with the tab Live.  Runs ``program``, and connects with it.  Mistakes are reported."""
+    from epg.connect.session import Refused
+    from epg.source import Span
+
+    span = session.without_console
+    if span is not None:
+        hint = "add 'console: true' to 'communication'; without a console, ROS 2 has its topics and parameters"
+        diagnostics.error("no-console", span, "this target has no console, so the page cannot watch it", hint=hint)
+        return
+    session.opens_live = True
+    if program is None:
+        return
+    span = Span(str(program))
+    if not program.is_file():
+        hint = "build it first; it is in the build folder, with the name in epg_add_executable()"
+        diagnostics.error("file-not-found", span, f"there is no program '{program}'", hint=hint)
+        return
+    try:
+        session.run_live(Path(os.path.abspath(program)))
+    except Refused as problem:
+        hint = (
+            problem.hint
+            or "the program must be one of epg_add_executable() for the host; start it in a terminal to see more"
+        )
+        diagnostics.error("program-not-started", span, problem.message.replace("\n", ": "), hint=hint)
 
 
 def _serve(session: Session, options: argparse.Namespace) -> int:
@@ -215,15 +260,14 @@ def _check_model(folder: Path, diagnostics: Diagnostics) -> None:
 
 def _open_browser(address: str) -> None:
     """Opens the page in a graphical browser, if there is one.  A browser in the terminal would hide the address."""
-    if sys.platform.startswith("linux") and not any(
-        os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
-    ):
-        return
     import webbrowser
 
+    shows = not sys.platform.startswith("linux") or any(
+        os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
+    )
     try:
-        browser = webbrowser.get()
+        browser = webbrowser.get() if shows else None
     except webbrowser.Error:
-        return
-    if Path(getattr(browser, "name", "")).name not in _TEXT_BROWSERS:
-        browser.open(address)
+        browser = None
+    if browser is None or Path(getattr(browser, "name", "")).name in _TEXT_BROWSERS or not browser.open(address):
+        sys.stderr.write("epg connect: no browser was opened: open the address above yourself\n")

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -21,6 +22,9 @@ from epg.connect.run.program import ProgramRun, command_of, port_of
 from epg.connect.run.simulate import SimulationRun, commands_of
 from epg.resolve.application import Application
 from epg.source import Span
+
+START = 10.0
+"""Seconds that a program gets to make the terminal of its console."""
 
 
 class Runs:
@@ -142,6 +146,25 @@ class Runs:
         if self._ask("program", question, agreed, {}) is None:
             self._program = ProgramRun(self._changed)
             self._program.start(program, port)
+
+    def run_with_console(self, program: Path) -> Path:
+        """Runs a program that the user has named on the command line.  Returns the terminal of its console.
+
+        Raises Refused.
+        """
+        self.check_idle()
+        port = port_of(program)
+        self._program = ProgramRun(self._changed)
+        self._program.start(program, port)
+        end = time.monotonic() + START
+        while not port.exists() and self._program.is_running and time.monotonic() < end:
+            time.sleep(0.02)
+        if not self._program.is_running:
+            problem = self._program.state()["messages"][0]
+            raise Refused(problem["message"], problem["hint"], 409)
+        if not port.exists():
+            raise Refused(f"'{program.name}' has no console after {START:.0f} s", "name a program of this target", 409)
+        return port
 
     def find_boards(self, job: Job, application: Application) -> None:
         """Looks for boards to which the products of the last build can be written.  Raises Refused."""

@@ -39,6 +39,7 @@ from epg.connect.targets import Targets
 from epg.connect.view import diagnostic_view, proposals_of
 from epg.diagnostics import Diagnostics
 from epg.edit.bindings import CannotEdit
+from epg.source import Span
 
 __all__ = ["Refused", "Session", "State"]
 
@@ -70,6 +71,7 @@ class Session:
         With the file of a ``system``, the session begins with it, or with the first of ``jobs``.
         """
         self.ended = threading.Event()
+        self.opens_live = False  # the page begins with the tab Live
         self._changed = threading.Condition(threading.RLock())
         self._version = 0
         self._looked = 0.0
@@ -115,7 +117,11 @@ class Session:
         with self._changed:
             places = self._editor.loaded.places if self._editor is not None else None
             shown = {"version": self._version, "epg": epg.__version__, **self._shown}
-            return shown | self.runs.state(places) | {"live": self.live.state(self.runs.port)}
+            return shown | self.runs.state(places) | {"live": self._live_state()}
+
+    def _live_state(self) -> State:
+        shown = {"opens": self.opens_live, "console": self.without_console is None}
+        return self.live.state(self.runs.port) | shown
 
     def wait(self, after: int, timeout: float) -> State:
         """The state, once its version differs from ``after``, the session ends, or ``timeout`` seconds have passed."""
@@ -212,6 +218,22 @@ class Session:
         expected = built_hash(editor.job) if editor is not None else ""
         roots = editor.job.request.roots if editor is not None else ()
         self.live.connect(Path(text(body, "path")), expected, int(number(body, "baud", 115200)), roots)
+
+    def run_live(self, program: Path) -> None:
+        """Runs ``program`` of the open target in real time, and connects with it.  It is not enabled.  Raises Refused.
+
+        The program ends with the session.
+        """
+        job = self._opened().job
+        self.live.connect(self.runs.run_with_console(program), built_hash(job), roots=job.request.roots)
+
+    @property
+    def without_console(self) -> Span | None:
+        """The place in the ``.tcf`` of an open target that has no console, with which :attr:`live` could connect."""
+        configuration = self._editor.loaded.parts.configuration if self._editor is not None else None
+        if configuration is None or any(used.name == CONSOLE for used in configuration.communication.middlewares):
+            return None
+        return configuration.communication.span
 
     @property
     def has_changes(self) -> bool:
@@ -360,10 +382,7 @@ class Session:
             self.runs.compare(simulation, driven, by, anyway=anyway)
 
     def _run(self, body: Body) -> None:
-        configuration = self._opened().loaded.parts.configuration
-        used = configuration.communication.middlewares if configuration is not None else ()
-        console = any(middleware.name == CONSOLE for middleware in used)
-        self.runs.run_program(text(body, "path"), text(body, "run", ""), console=console)
+        self.runs.run_program(text(body, "path"), text(body, "run", ""), console=self.without_console is None)
 
     def _flash(self, body: Body) -> None:
         """Without "board": looks for boards.  With it: writes the last product to this board."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The target <name>_connect: it runs in a build, and starts that build again."""
+"""The targets <name>_connect and <name>_live: they run in a build, and the first one starts that build again."""
 
 from __future__ import annotations
 
@@ -9,18 +9,20 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
 
 from tests.cmake.project import ROOT, Project, compiled
+from tests.connect.builds import processes
 from tests.connect.started import generate, started
 
 GENERATORS = ["Ninja", "Unix Makefiles"]
 
 
-def build_command(project: Project, *more: str) -> list[str]:
-    return ["cmake", "--build", str(project.build_folder), "--target", "robot_connect", *more]
+def build_command(project: Project, target: str = "robot_connect", *more: str) -> list[str]:
+    return ["cmake", "--build", str(project.build_folder), "--target", target, *more]
 
 
 @pytest.fixture(params=GENERATORS)
@@ -32,7 +34,7 @@ def robot(request: pytest.FixtureRequest, tmp_path: Path) -> Project:
 
 def test_a_build_within_the_build(robot: Project) -> None:
     """Two builds with a change between that configures again; afterwards everything is up to date and complete."""
-    with started(build_command(robot, "-j2")) as (page, process):
+    with started(build_command(robot, "robot_connect", "-j2")) as (page, process):
         state = page.state()
         assert state["project"]["name"] == "robot" and state["phase"] == "connect"
         for end in ([], [{"reference": "position"}]):
@@ -65,10 +67,39 @@ def test_what_the_target_was_told_is_what_the_page_shows(robot: Project) -> None
         assert not [d for d in state["diagnostics"] if d["severity"] == "error"]
 
 
-def test_a_path_that_build_programs_would_replace_breaks_no_build(robot: Project) -> None:
-    rename_bindings(robot, "$<1:x>#.yaml")
+def test_a_path_that_build_programs_would_replace_reaches_the_page(robot: Project) -> None:
+    name = "$<1:x>#.yaml"
+    rename_bindings(robot, name)
     robot.build("--target", "epg_runtime")
-    assert "robot_connect" not in robot.build("--target", "help")
+    for target in ("robot_connect", "robot_live"):
+        with started(build_command(robot, target)) as (page, _):
+            state = page.state()
+            assert state["project"]["files"]["bindings"].endswith(name)
+            assert (state["live"]["target"] is not None) == (target == "robot_live")
+
+
+def test_live_runs_the_program_as_long_as_the_server(robot: Project) -> None:
+    """It ends by Ctrl-C, and when the server is killed."""
+    robot.edit("robot.tcf", "enable_at_start: true", "enable_at_start: false")
+    for end in (signal.SIGKILL, signal.SIGINT):
+        with started(build_command(robot, "robot_live")) as (page, process):
+            state = page.state()
+            assert state["program"]["state"] == "running" and state["live"]["opens"]
+            target = state["live"]["target"]
+            assert (target["name"], target["matches"], target["state"]["enabled"]) == ("robot", True, "0")
+            assert programs(robot)
+            os.killpg(process.pid, end)
+            said = process.communicate(timeout=30)[0]
+            assert "Traceback" not in said
+            until = time.monotonic() + 10
+            while programs(robot):
+                assert time.monotonic() < until, "it still runs"
+                time.sleep(0.01)
+
+
+def programs(robot: Project) -> list[str]:
+    program = str(robot.build_folder / "robot_host")
+    return [command for command in processes(robot.build_folder) if command.startswith(program)]
 
 
 def test_ctrl_c_ends_it(robot: Project) -> None:

@@ -67,7 +67,11 @@ const problemPart = (problem) =>
 
 // Before a connection
 
-function portsPart({ ports }) {
+const WITHOUT_CONSOLE = `This target has no console, so the page cannot watch or enable it. Behind an agent there are
+ its topics, diagnostics and parameters of ROS 2, and the topic ~/enable, which disables it. 'console: true' in
+ 'communication' adds a console, if the target has a second port.`;
+
+function portsPart({ ports, console }) {
   const list = h(
     "datalist",
     { id: "live-ports" },
@@ -85,7 +89,9 @@ function portsPart({ ports }) {
     },
     h(
       "p.empty",
-      "Watch and tune a running target: a board with the console on a serial port, or a program on this computer.",
+      console
+        ? "Watch and tune a running target: a board with the console on a serial port, or a program on this computer."
+        : WITHOUT_CONSOLE,
     ),
     h("label", { for: "live-port" }, "Port "),
     h("input", {

@@ -119,7 +119,10 @@ const OUTCOMES = {
   flash: flashOutcome,
   comparison: comparisonOutcome,
 };
+let begun = false;
 follow(() => {
+  if (!begun && current()?.live.opens) Object.assign(ui, { tab: "live", dock: "large" });
+  begun ||= current() !== null;
   if (current() && !hasEnded()) {
     followActivities(current(), OUTCOMES);
     followLive(current());

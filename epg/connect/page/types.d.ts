@@ -106,6 +106,10 @@ interface StartState {
 
 /** The connection with a running target. */
 interface Live {
+  /** The page begins with this tab. */
+  opens: boolean;
+  /** False: the target has no console, so the page cannot connect with it. */
+  console: boolean;
   ports: { path: string; device: string }[];
   target: LiveTarget | null;
   problem: Refusal | null;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs a program for this computer in real time, until it ends or the user stops it.
+"""Runs a program for this computer in real time, until it ends or the user stops it, and never longer than EPG.
 
 >>> # run = ProgramRun(changed=wake_the_page)
 >>> # run.start(Path("build/jiwy_host")); run.lines(0); run.cancel()
@@ -8,6 +8,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 from typing import ClassVar
 
@@ -17,6 +18,14 @@ from epg.connect.build.messages import Message
 LONGEST = 86400
 """The longest time in seconds that a program runs: a program that is no ROS 2 node needs a duration."""
 _TAIL = 5
+_UNTIL_PARENT_ENDS = (
+    "import ctypes, os, signal, sys\n"
+    "ctypes.CDLL(None).prctl(1, signal.SIGTERM)\n"  # PR_SET_PDEATHSIG of Linux, which outlasts exec
+    "if os.getppid() == int(sys.argv[1]):\n"
+    "    try: os.execv(sys.argv[2], sys.argv[2:])\n"
+    "    except OSError as error: sys.exit(error.strerror)\n"
+)
+"""A script that becomes a program, which Linux ends with its parent: also after SIGKILL, which nothing can handle."""
 
 
 class ProgramRun(Activity):
@@ -26,11 +35,13 @@ class ProgramRun(Activity):
 
     def start(self, program: Path, port: Path | None) -> None:
         """``port`` is the terminal that the program makes for its console; None: it has no console."""
+        if port is not None and port.is_symlink():
+            port.unlink()  # of a program that was killed: its terminal can belong to another program now
         self.shown |= {"program": str(program), "port": str(port or "")}
         self.begin(lambda: self._run(program, port))
 
     def _run(self, program: Path, port: Path | None) -> Outcome:
-        status = self.run("run", command_of(program, port), program.parent, os.environ)
+        status = self.run("run", _until_parent_ends(command_of(program, port)), program.parent, os.environ)
         if self.is_cancelled:
             return Outcome("cancelled")
         if status == 0:
@@ -44,6 +55,16 @@ def command_of(program: Path, port: Path | None) -> tuple[str, ...]:
     """The command that runs ``program`` in real time.  It gives no setpoint, and does not enable the target."""
     console = () if port is None else (f"--console-pty={port}",)
     return (str(program), *console, "--realtime", f"--duration={LONGEST}")
+
+
+def _until_parent_ends(command: tuple[str, ...]) -> tuple[str, ...]:
+    """The command that does the same, and is ended by SIGTERM when the thread that has started it ends.
+
+    Only Linux can do this.
+    """
+    if sys.platform != "linux":
+        return command
+    return (sys.executable, "-I", "-S", "-c", _UNTIL_PARENT_ENDS, str(os.getpid()), *command)
 
 
 def port_of(program: Path) -> Path:

@@ -39,10 +39,12 @@ Choose the .tcf of a target for the board: 'epg targets' lists them. If there is
   target_link_libraries(${name} PUBLIC epg_host)
 endfunction()
 
-# Called by epg_add_executable(): adds a program that runs target <name> and has its options on the command line.
+# Called by epg_add_executable(): adds a program that runs target <name> and has its options on the command line, and the
+# CMake target <name>_live, which runs it.
 function(_epg_host_executable executable name)
   add_executable(${executable} "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/src/main.c")
   target_compile_definitions(${executable} PRIVATE EPG_HOST_TARGET=${name}_host)
   target_link_libraries(${executable} PRIVATE ${name})
   set_target_properties(${executable} PROPERTIES C_STANDARD 11 C_STANDARD_REQUIRED ON)
+  _epg_live_target("${name}" "${executable}")
 endfunction()
