@@ -121,11 +121,11 @@ const OUTCOMES = {
 };
 let begun = false;
 follow(() => {
-  if (!begun && current()?.live.opens) Object.assign(ui, { tab: "live", dock: "large" });
-  begun ||= current() !== null;
   if (current() && !hasEnded()) {
     followActivities(current(), OUTCOMES);
     followLive(current());
+    if (!begun && current().live.opens) Object.assign(ui, { tab: "live", dock: "large" }); // also while a program runs
+    begun = true;
   }
   draw();
 });

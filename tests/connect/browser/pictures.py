@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import io
 import shutil
+import subprocess
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ from epg.bootstrap import ensure
 from tests.emulator.toolchain import arm_gcc, pico_sdk
 
 from .acts import until
-from .conftest import FLAGS, NAMES
+from .conftest import FLAGS, NAMES, copy_jiwy
 from .served import ROOT, Served
 
 PICTURES = ROOT / "docs" / "pictures"
@@ -47,6 +48,7 @@ def take_pictures(folder: Path = PICTURES) -> None:
         _pins(page, folder)
         _build(page, epg, folder)
         _simulate(page, folder)
+        _live(browser, place, folder)
         browser.close()
     shutil.rmtree(place, ignore_errors=True)
 
@@ -120,6 +122,32 @@ def _simulate(page: Any, folder: Path) -> None:
     page.locator(".panel-simulation img.picture").wait_for(timeout=600_000)
     page.get_by_role("button", name="Larger").click()
     _take(page, folder, "simulation")
+
+
+def _live(browser: Any, place: Path, folder: Path) -> None:
+    """The steps of docs/live.md with the example's program, until its gain has been increased."""
+    copy_jiwy(place / "jiwy")
+    build = place / "jiwy/build"
+    subprocess.run(["cmake", "-S", place / "jiwy", "-B", build], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--build", build, "--target", "jiwy_host"], check=True, stdout=subprocess.DEVNULL)
+    with Served(place / "jiwy", "--live", "--run", build / "jiwy_host") as epg:
+        page = browser.new_context(viewport=SIZE, reduced_motion="reduce").new_page()
+        page.goto(epg.address)
+        page.get_by_role("button", name="Enable (hold)").click(delay=700)
+        page.wait_for_timeout(6000)
+        for name, value, wait in (
+            ("pan_subscriber", "1", 2500),
+            ("Pan\\PID\\kp", "0.3", 500),
+            ("pan_subscriber", "0.5", 2500),
+            ("Pan\\PID\\kp", "2.2", 1500),
+        ):
+            field = page.get_by_role("textbox", name=name, exact=True)
+            field.fill(value)
+            field.press("Enter")
+            page.wait_for_timeout(wait)
+        page.evaluate("document.activeElement.blur()")
+        page.locator("#panel").evaluate("panel => panel.scrollTo(0, 0)")
+        _take(page, folder, "live")
 
 
 def _end(epg: Served, port: str, **end: Any) -> None:

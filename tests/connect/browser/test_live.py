@@ -14,7 +14,9 @@ import pytest
 from tests.live.target import LATE, LEASE, Target
 
 from .axe import violations
+from .served import ROOT, Served
 
+LIVE = (ROOT / "docs" / "live.md").read_text(encoding="utf-8")
 Open = Callable[..., Any]
 HOLD = 700  # milliseconds
 PATIENT = 120_000  # milliseconds for a build on a computer with high load
@@ -129,6 +131,55 @@ def test_a_step_is_recorded_and_saved(page: Any) -> None:
     page.get_by_role("meter", name=re.compile(r"^Longest cycle: [\d.]+ % of the control period")).wait_for()
     assert re.search(r"Cycles\s+\d{3}", page.get_by_role("table").inner_text())
     assert violations(page) == []
+
+
+def test_the_first_three_minutes(jiwy: Any, open_page: Open, jiwy_host: Path) -> None:
+    """The steps of docs/live.md with these words.  The CMake target of its step 1 starts the same command."""
+    steps = LIVE[LIVE.index("## The first three minutes") : LIVE.index("## In a terminal")]
+    with Served(jiwy.folder, "--live", "--run", jiwy_host) as epg:
+        page = open_page(epg.address)
+        page.get_by_role("tab", name="Live ● enabled").wait_for()  # this program is enabled at its start
+        page.keyboard.press("Space")
+        page.get_by_role("tab", name="Live ○ disabled").wait_for()
+
+        def fill(name: str, value: str) -> None:
+            assert f"`{value}`" in steps and f"`{name}`" in steps
+            page.get_by_role("textbox", name=name, exact=True).fill(value)
+            page.get_by_role("textbox", name=name, exact=True).press("Enter")
+
+        def error() -> float:
+            position, setpoint = (
+                page.locator(".live-signals label", has_text=name).locator(".value").inner_text()
+                for name in ("inputs.position_pan", "inputs.setpoint_pan")
+            )
+            return abs(float(setpoint.split()[0]) - float(position.split()[0]))
+
+        def follows() -> None:
+            end = time.monotonic() + 10
+            while error() > 0.006:
+                assert time.monotonic() < end, page.locator("#panel").inner_text()
+                page.wait_for_timeout(50)
+
+        enable(page)
+        fill("pan_subscriber", "1")
+        page.locator(".live-signals .value").first.filter(has_text=re.compile("^1\\.0|^0\\.99")).wait_for(
+            timeout=10_000
+        )
+        follows()
+        fill("Pan\\PID\\kp", "0.3")
+        fill("pan_subscriber", "0.5")
+        page.wait_for_timeout(1000)
+        assert error() > 0.015, "it creeps"
+        fill("Pan\\PID\\kp", "2.2")
+        follows()
+        page.keyboard.press("Space")
+        page.get_by_role("tab", name="Live ○ disabled").wait_for()
+        page.get_by_role("button", name="Keep in the bindings").click()
+        page.get_by_role("tab", name="Changes ●").wait_for()
+        page.get_by_role("button", name="Save", exact=True).click()
+        page.get_by_role("tab", name="Changes", exact=True).wait_for()
+        assert "parameters:\n  'Pan\\PID\\kp': 2.2\n" in jiwy.text()
+        assert "'Pan\\PID\\kp': 2.2" in steps
 
 
 def test_an_actuator_moves_while_its_button_is_held(page: Any) -> None:
