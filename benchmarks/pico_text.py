@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures the text of JIWY's images on a Pico: by part of the program, and beside eProsima's client without EPG.
 
-The programs written by hand have EPG's model and encoders.  One has no communication, one the SDK's serial port on USB,
-and one is a node of an XRCE agent by eProsima's client alone: ``client_alone``.
+Three programs for the same robot are written by hand, with EPG's model and encoder driver: ``client_alone``.  The first
+one does not communicate.  The second one uses the SDK's serial port on USB.  The third one uses eProsima's client, and
+is a node of an XRCE agent.
 """
 
 from __future__ import annotations
@@ -131,7 +132,7 @@ def comparison(ours: dict[str, Path], by_hand: dict[str, Path]) -> Table:
     rows = []
     for group, programs in (("EPG, ", ours), ("", by_hand)):
         sizes = {title: size_of(elf) for title, elf in programs.items()}
-        least = next(iter(sizes.values()))  # the first program of a group has no communication
+        least = next(iter(sizes.values()))  # each group begins with the program that does not communicate
         for title, size in sizes.items():
             beyond = [f"{size.text - least.text:,}", f"{size.data + size.bss - least.data - least.bss:,}"]
             rows.append([group + title, f"{size.text:,}", f"{size.data + size.bss:,}", *beyond])

@@ -153,8 +153,8 @@ def compare_traces(generated: Program, written: Program, cycles: int) -> str:
     disabled = sum(line.split()[9] == "0" for line in one)
     faults = {line.split()[10] for line in one} - {"0"}
     return (
-        f"Both gave the same {len(one):,} lines of trace, in {disabled:,} of which the target was disabled, "
-        f"and {len(faults)} kinds of fault occurred."
+        f"The traces of both programs are equal. They have {len(one):,} cycles; in {disabled:,} of these, the target "
+        f"was disabled. {len(faults)} kinds of fault occurred."
     )
 
 

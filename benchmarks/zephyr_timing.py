@@ -128,6 +128,8 @@ def measure(load: Load, seeds: int, milliseconds: int) -> Measured:
             if load.flooded:
                 jiwy.pico.send("\nwatch none\n", port=CONSOLE_PORT)
                 jiwy.agent.run(2000)
+                while jiwy.pico.receive(port=CONSOLE_PORT):  # answers to the flood
+                    jiwy.agent.run(500)
             stats = jiwy.stats()
             total.timing.overruns += int(stats["overruns"])
             if stats["enabled"] != "1" or jiwy.faults():

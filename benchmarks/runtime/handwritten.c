@@ -17,6 +17,7 @@
 
 #include "epg/port.h"
 #include "glue.h"
+#include "guard.h"
 
 #define PERIOD_NS 1000000u
 #define OVERRUN_LIMIT 10u
@@ -27,15 +28,8 @@
 #define PAN_RAD_PER_COUNT 0.002825173249631109  /* 180 degrees in 1112 counts */
 #define TILT_RAD_PER_COUNT 0.007107675686854735 /* 90 degrees in 221 counts */
 
-/* Limits of the motion guards: angles in rad, times in cycles. */
-#define STALL_DUTY 0.3
-#define STALL_ANGLE 0.017453292519943295 /* 1 degree */
-#define STALL_CYCLES 500
-#define RUNAWAY_DUTY 0.04
-#define RUNAWAY_ANGLE 0.3490658503988659      /* 20 degrees */
 #define PAN_HOMING_TRAVEL 3.490658503988659   /* 200 degrees */
 #define TILT_HOMING_TRAVEL 1.9198621771937625 /* 110 degrees */
-#define HOMING_CYCLES 10000u
 
 /* The numbers of faults that the runtime leaves to components. */
 enum { FAULT_STALL = 6, FAULT_RUNAWAY, FAULT_HOMING_TRAVEL, FAULT_HOMING_TIME, FAULT_SENSOR };
@@ -61,21 +55,6 @@ typedef struct bridge {
     int8_t direction;
     double duty; /* as applied */
 } bridge_t;
-
-typedef struct guard {
-    bool armed;
-    bool homing;
-    bool moved;       /* a reset has moved the angle */
-    int8_t direction; /* of the drive; 0: none */
-    int32_t stalled;  /* cycles driven without motion; negative: backwards */
-    double stall_origin;
-    double homing_origin;
-    uint32_t driven;       /* cycles of homing in which the motor was driven */
-    double best;           /* the angle farthest in `direction` */
-    uint32_t cycles;       /* since that angle */
-    uint32_t half_cycles;  /* from that angle to half of RUNAWAY_ANGLE; 0: not yet */
-    double half_travelled; /* distance from that angle at that time */
-} guard_t;
 
 /* The control words of an exchange with four buffers, after H. Simpson. */
 typedef struct exchange {
@@ -265,61 +244,6 @@ static void latch(epg_fault_t cause)
 }
 
 /* Motion guards */
-
-static void guard_begin(guard_t *guard, double angle)
-{
-    guard->stall_origin = angle;
-    guard->stalled = 0;
-    guard->direction = 0;
-}
-
-static int8_t direction_of(double duty, double least)
-{
-    return (int8_t)(duty >= least ? 1 : duty <= -least ? -1 : 0);
-}
-
-/** True if the axis has moved RUNAWAY_ANGLE against its drive, and was not slower in the second half of this way. */
-static bool runs_away(guard_t *guard, double angle, double duty)
-{
-    const int8_t direction = direction_of(duty, RUNAWAY_DUTY);
-    const double against = direction > 0 ? guard->best - angle : angle - guard->best;
-    if (direction == 0 || direction != guard->direction || against <= 0.0) {
-        guard->direction = direction;
-        guard->best = angle;
-        guard->cycles = 0;
-        guard->half_cycles = 0;
-        return false;
-    }
-    guard->cycles++;
-    if (guard->half_cycles == 0 && against >= 0.5 * RUNAWAY_ANGLE) {
-        guard->half_cycles = guard->cycles;
-        guard->half_travelled = against;
-    }
-    if (against < RUNAWAY_ANGLE) {
-        return false;
-    }
-    guard->direction = 0;
-    return (against - guard->half_travelled) * guard->half_cycles >=
-           guard->half_travelled * (guard->cycles - guard->half_cycles);
-}
-
-/** True if the axis was driven in one direction for STALL_CYCLES without moving by STALL_ANGLE. */
-static bool stalls(guard_t *guard, double angle, double duty)
-{
-    const double moved = angle - guard->stall_origin;
-    if (moved >= STALL_ANGLE || moved <= -STALL_ANGLE) {
-        guard->stall_origin = angle;
-        guard->stalled = 0;
-        return false;
-    }
-    const int8_t direction = direction_of(duty, STALL_DUTY);
-    if (direction != 0) {
-        guard->stalled += direction;
-    } else if (guard->stalled != 0) {
-        guard->stalled -= guard->stalled > 0 ? 1 : -1;
-    }
-    return guard->stalled >= STALL_CYCLES || guard->stalled <= -STALL_CYCLES;
-}
 
 static epg_fault_t homes(guard_t *guard, double travel, double angle, double duty)
 {

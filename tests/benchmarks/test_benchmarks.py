@@ -99,7 +99,7 @@ def test_the_two_programs_are_compared_through_faults() -> None:
     """A difference would end the program; the compared run must contain enough events."""
     if shutil.which("valgrind") is None:
         pytest.skip("valgrind is not installed: apt install valgrind")
-    found = re.search(r"same ([\d,]+) lines of trace, in ([\d,]+) of which the target was disabled", run("runtime"))
+    found = re.search(r"have ([\d,]+) cycles; in ([\d,]+) of these, the target was disabled", run("runtime"))
     assert found is not None
     assert int(found[1].replace(",", "")) == 6000
     assert int(found[2].replace(",", "")) > 100
