@@ -11,8 +11,13 @@
 
 #ifdef __ASSEMBLER__
 
-/* The tests for NaN are in ".section .text", all other functions in sections that the SDK's options put into RAM. */
+/*
+ * The tests for NaN are in ".section .text", all other functions in sections that the SDK's options put into RAM.
+ * Another executable of the same CMake folder can lack these options.
+ */
+#if PICO_DOUBLE_IN_RAM || PICO_FLOAT_IN_RAM
 #define text time_critical.check_nan, "ax"
+#endif
 
 #else
 
