@@ -6,15 +6,19 @@ A port belongs to one program at a time.  Others are told which program has it.
 
 from __future__ import annotations
 
+import contextlib
 import errno
-import fcntl
 import os
 import select
 import stat
-import termios
-import tty
+import sys
 from pathlib import Path
 from types import TracebackType
+
+with contextlib.suppress(ImportError):  # Windows does not have them, and `epg connect` must work there
+    import fcntl
+    import termios
+    import tty
 
 BAUD = 115200
 
@@ -35,6 +39,8 @@ class Port:
 
     def __init__(self, path: Path, baud: int = BAUD) -> None:
         self.path = path
+        if sys.modules.get("termios") is None:
+            raise PortError("EPG does not use ports on this system", "start it on Linux")
         try:
             self._file = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK | os.O_CLOEXEC)
         except OSError as error:

@@ -8,6 +8,8 @@ import http.client
 import io
 import json
 import socket
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -117,6 +119,19 @@ def test_another_firmware_is_shown_and_not_written_to(target: Target) -> None:
             page.post("live/enable", page="one")
         page.post("live/command", line="get")
         page.post("live/stop")
+
+
+def test_the_page_works_on_a_system_without_terminals() -> None:
+    """Python on Windows does not have these modules."""
+    code = (
+        "import sys\n"
+        "sys.modules.update({name: None for name in ('fcntl', 'termios', 'tty', 'pty')})\n"
+        "import pathlib, epg.connect.server, epg.live.port as port\n"
+        "try: port.Port(pathlib.Path('COM3'))\n"
+        "except port.PortError as problem: print(problem)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.stdout == "EPG does not use ports on this system\n", done.stderr
 
 
 # Enabling
