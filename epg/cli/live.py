@@ -230,9 +230,9 @@ def _start(recording: Recording, client: Client, names: list[str], options: argp
 def _list(options: argparse.Namespace) -> int:
     from epg.cli.report import to_json
     from epg.cli.table import table
-    from epg.live.found import look_at, ports
+    from epg.live.found import look_at_all, ports
 
-    found = [look_at(path, device) for path, device in ports().items()]
+    found = look_at_all(ports())
     if options.json:
         data = [
             {

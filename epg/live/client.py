@@ -100,15 +100,23 @@ class Client:
 
     ``told`` gets lines that answer no command ("state enabled=0 ..."), and a reason after "lost " when the connection
     ends.  ``numbered`` gets each number that a target on a lease sends; :meth:`respond` sends it back.  Both are called
-    from the thread that reads, and must return at once.
+    from the thread that reads, and must return at once.  A command that may be repeated is sent ``tries`` times,
+    at least ``patience`` seconds apart.
 
     :raises Lost: the target does not answer
     """
 
     def __init__(
-        self, port: Carrier, told: Callable[[str], None] | None = None, numbered: Callable[[int], None] | None = None
+        self,
+        port: Carrier,
+        told: Callable[[str], None] | None = None,
+        numbered: Callable[[int], None] | None = None,
+        *,
+        tries: int = 3,
+        patience: float = PATIENCE,
     ) -> None:
         self._port = port
+        self._tries, self._patience = tries, patience
         self._told = told or (lambda line: None)
         self._numbered = numbered or self.respond
         self._rows: Callable[[Rows], None] | None = None
@@ -228,7 +236,7 @@ class Client:
             self._port.write(encode(message))
 
     def _ask(self, kind: bytes, data: bytes, command: str) -> list[str]:
-        for _ in range(3 if command in AGAIN else 1):
+        for _ in range(self._tries if command in AGAIN else 1):
             answer = _Answer()
             with self._writing:
                 self._tag = self._tag % 255 + 1
@@ -237,7 +245,7 @@ class Client:
             try:
                 self._send(kind + bytes([tag]) + data)
                 heard = -1
-                while not answer.over.wait(PATIENCE) and len(answer.lines) > heard and not self._lost:
+                while not answer.over.wait(self._patience) and len(answer.lines) > heard and not self._lost:
                     heard = len(answer.lines)  # a long answer takes its time
             except PortError as error:
                 raise Lost(str(error)) from error

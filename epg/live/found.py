@@ -1,16 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The serial ports of this computer, and the target behind each of them."""
+"""The serial ports of this computer, and the target behind each of them.
+
+Only ports of USB devices that can have firmware of EPG are asked: opening a port can restart another device, and bytes
+can make it act.  A port that a program of this user has open is not touched.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
 from epg.live.client import Client, Description, Lost, Refused
-from epg.live.port import Port, PortError
+from epg.live.port import Port, PortError, program_with
 
 _BY_ID = Path("/dev/serial/by-id")
 _PATTERNS = ("ttyACM*", "ttyUSB*", "cu.usb*")
+DEVICES = Path("/sys/class/tty")
+"""The folder in which Linux has a folder for each terminal."""
+VENDORS = {"2e8a": "Raspberry Pi", "0483": "STMicroelectronics", "2fe3": "Zephyr"}
+"""USB vendors of boards with EPG and of their debug probes, without a vendor that ``communication.usb`` sets."""
 
 
 @dataclass(frozen=True)
@@ -30,14 +40,39 @@ def ports() -> dict[Path, str]:
     return {path: names.get(path, "") for path in paths}
 
 
+def look_at_all(devices: Mapping[Path, str]) -> list[Found]:
+    """Asks the targets behind ports, all at the same time: in less than 2 s."""
+    if not devices:
+        return []
+    with ThreadPoolExecutor(len(devices)) as pool:
+        return list(pool.map(look_at, devices, devices.values()))
+
+
 def look_at(path: Path, device: str = "") -> Found:
-    """Asks the target behind a port to describe itself."""
+    """Asks the target behind a port to describe itself, if the port is that of a board and is not in use."""
+    vendor = _usb_vendor(path)
+    if vendor not in VENDORS:
+        return Found(path, device, None, "not asked: it is not a board that EPG knows")
+    user = program_with(path)
+    if user:
+        return Found(path, device, None, f"in use by {user}")
     try:
         with Port(path) as port:
-            client = Client(port)
+            client = Client(port, tries=1, patience=0.7)  # a silent port takes twice this time
             try:
                 return Found(path, device, client.description, "")
             finally:
                 client.stop()
     except (PortError, Lost, Refused) as problem:
         return Found(path, device, None, str(problem))
+
+
+def _usb_vendor(path: Path) -> str:
+    """The vendor of the USB device with a serial port: four hexadecimal digits, or empty if there is none."""
+    folder = (DEVICES / path.resolve().name / "device").resolve()
+    for each in (folder, *folder.parents):
+        try:
+            return (each / "idVendor").read_text(encoding="ascii").strip()
+        except OSError:
+            continue  # an interface or a port of the device
+    return ""

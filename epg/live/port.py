@@ -132,11 +132,11 @@ def _error_of_open(path: Path, error: OSError) -> PortError:
 
 
 def _taken(path: Path) -> PortError:
-    user = _program_with(path)
+    user = program_with(path)
     return PortError(f"another program has {path}{f': {user}' if user else ''}", "end it, or use it")
 
 
-def _program_with(path: Path) -> str:
+def program_with(path: Path) -> str:
     """Name and process of a program that has ``path`` open, as far as this user can see; else empty."""
     device = path.resolve()
     for folder in Path("/proc").glob("[0-9]*"):
