@@ -182,9 +182,9 @@ def _chosen(client: Client, options: argparse.Namespace) -> list[str]:
     from epg.diagnostics import did_you_mean
     from epg.live.client import Refused
 
-    known = [signal.name for signal in client.description.signals]
+    known = [signal.name for signal in client.description.streamed]
     if options.signals is None:
-        return known[:32]
+        return [signal.name for signal in client.description.signals[:32]]
     names = []
     for word in options.signals.split(",") if options.signals != "none" else ():
         found = [name for name in known if name == word or name.split(".", 1)[-1] == word]
@@ -221,7 +221,7 @@ def _sinks(options: argparse.Namespace, client: Client, names: list[str]) -> Ite
 def _start(recording: Recording, client: Client, names: list[str], options: argparse.Namespace) -> None:
     if not names:
         return
-    known = [signal.name for signal in client.description.signals]
+    known = [signal.name for signal in client.description.streamed]
     every = recording.start(client, [known.index(name) for name in names], options.every)
     if every != options.every and not options.json:
         sys.stderr.write(f"a row in every {every}th control cycle: the port carries no more\n")

@@ -297,6 +297,8 @@ class _Handler(BaseHTTPRequestHandler):
             live.enable(text(body, "page"))
         elif action == "command":
             return {"answer": live.command(text(body, "line"))}
+        elif action == "durations":
+            return {"durations": live.durations()}
         elif action == "connect":
             session.go_live(body)
         elif action == "disconnect":

@@ -72,10 +72,16 @@ class Description:
     period: float  # of the control cycle, in seconds
     setpoints: tuple[str, ...]
     publications: tuple[str, ...]
-    signals: tuple[Signal, ...]
+    signals: tuple[Signal, ...]  # the ports of the model
+    loop: tuple[Signal, ...]  # durations of the control loop; empty for a target of an earlier EPG
     actuators: tuple[str, ...]
     encoders: tuple[str, ...]
     parameters: tuple[Parameter, ...]
+
+    @property
+    def streamed(self) -> tuple[Signal, ...]:
+        """All signals of a stream, in the order of their indices."""
+        return self.signals + self.loop
 
 
 @dataclass(frozen=True)
@@ -208,9 +214,10 @@ class Client:
         def names(category: str) -> tuple[str, ...]:
             return tuple(port[2] for port in ports if port[1] == category)
 
-        signals = tuple(
-            Signal(p[2], p[3].removeprefix("unit=") if len(p) > 3 else "") for p in ports if p[1] == "signal"
-        )
+        def signals(category: str, prefix: str) -> tuple[Signal, ...]:
+            found = [port for port in ports if port[1] == category]
+            return tuple(Signal(prefix + p[2], p[3].removeprefix("unit=") if len(p) > 3 else "") for p in found)
+
         try:
             parameters = self.parameters()
         except Refused:
@@ -223,7 +230,8 @@ class Client:
             period=float(words.get("period", "0.001")),
             setpoints=names("setpoint"),
             publications=names("publication"),
-            signals=signals,
+            signals=signals("signal", ""),
+            loop=signals("loop", "loop."),
             actuators=names("actuator"),
             encoders=names("encoder"),
             parameters=parameters,

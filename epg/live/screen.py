@@ -80,7 +80,7 @@ class Screen:
 
     def __init__(self, client: Client, names: list[str], values: Values, recording: Recording, faults: Faults) -> None:
         self._client, self._names, self._values, self._recording = client, names, values, recording
-        units = {signal.name: signal.unit for signal in client.description.signals}
+        units = {signal.name: signal.unit for signal in client.description.streamed}
         self._units = [units[name] for name in names]
         self._line = ""
         self._said: deque[str] = deque(maxlen=LINES)

@@ -66,7 +66,7 @@ def connect(page: Page, target: Target) -> dict[str, Any]:
 def test_the_state_shows_the_target(page: Page, target: Target) -> None:
     found = connect(page, target)
     assert (found["name"], found["matches"], found["every"]) == ("jiwy", True, 1)
-    assert {"name": "inputs.position_pan", "unit": "rad"} in found["signals"]
+    assert {"name": "inputs.position_pan", "unit": "rad", "loop": False} in found["signals"]
     assert found["state"]["enabled"] == "1"
     page.post("live/disconnect")
     assert page.state()["live"]["target"] is None

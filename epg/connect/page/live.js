@@ -41,6 +41,7 @@ async function request(action, body) {
 export function livePanel(state) {
   const { target } = state.live;
   if (!target) return [problemPart(state.live.problem), problemPart(refused), portsPart(state.live)];
+  const ported = shownSignals(target).filter((index) => !target.signals[index].loop);
   return [
     headPart(target),
     problemPart(refused),
@@ -55,8 +56,8 @@ export function livePanel(state) {
       actuatorsPart(target),
       linesPart(),
     ),
-    recordingPart(target, shownSignals(target), command),
-    comparisonPart(state, shownSignals(target)),
+    recordingPart(target, ported, command),
+    comparisonPart(state, ported),
     timingPart(target),
   ];
 }

@@ -66,7 +66,9 @@ export function recordingPart(target, chosen, send) {
           h(
             "select",
             { id: "recording-signal", value: watched(target), onchange: (event) => fill("signal", event.target.value) },
-            target.signals.map((each) => h("option", { key: each.name, value: each.name }, each.name)),
+            target.signals
+              .filter((each) => !each.loop)
+              .map((each) => h("option", { key: each.name, value: each.name }, each.name)),
           ),
         ),
         input("level", "Level"),

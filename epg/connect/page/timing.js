@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// The timing of the control loop of a running target, from the console's command `stats`.
+// The timing of the control loop of a running target: the numbers of the console's command `stats`, and histograms of
+// the rows that were streamed since the connection.
 
 import { h } from "./dom.js";
 import { ask } from "./server.js";
 import { draw } from "./ui.js";
 
 const PERIOD = 2000; // ms between two questions while the part is open
+const BINS = 4; // per octave, as in epg/live/durations.py
+
+const TITLES = { "loop.lateness": "Start of a cycle after its tick", "loop.computation": "Computation of a cycle" };
+
+/** @typedef {{rows: number, median: number, most: number, bins: number[][]}} Histogram */
 
 let shown = /** @type {Record<string, string>} */ ({}); // the words of the last answer
+let histograms = /** @type {Record<string, Histogram>} */ ({});
 let timer = 0;
 
 /**
@@ -20,11 +27,19 @@ export const timingPart = (target) =>
     { key: "timing", ontoggle: (event) => follow(event.target) },
     h("summary", "Loop timing"),
     "cycles" in shown ? table(target.period * 1e9) : h("p.hint", { key: "none" }, "The target is being asked."),
+    h(
+      "div.histograms",
+      { key: "histograms" },
+      Object.entries(histograms).map(([name, found]) => found.rows > 0 && histogram(TITLES[name], found)),
+    ),
   );
 
-function follow(part) {
+async function follow(part) {
   window.clearTimeout(timer);
-  if (part.open) ask("command", { line: "stats" }).then(({ answer }) => take(part, answer ?? []));
+  if (!part.open) return;
+  const { answer } = await ask("command", { line: "stats" });
+  histograms = (await ask("durations")).durations ?? {};
+  take(part, answer ?? []);
 }
 
 function take(part, lines) {
@@ -73,3 +88,40 @@ function table(period) {
     ),
   );
 }
+
+// Bars of equal width for the bins. Their heights are logarithmic, so that one late cycle among millions is seen.
+/**
+ * @param {string} title
+ * @param {Histogram} found
+ */
+function histogram(title, found) {
+  const { rows, median, most, bins } = found;
+  const first = bins[0][0];
+  const counts = Array(bins[bins.length - 1][0] - first + 1).fill(0);
+  for (const [number, count] of bins) counts[number - first] = count;
+  const highest = Math.log(1 + Math.max(...counts));
+  const text = `${rows.toLocaleString("en")} cycles, median ${duration(median)}, longest ${duration(most)}`;
+  return h(
+    "figure",
+    { key: title },
+    h("figcaption", h("b", title), ` ${text}`),
+    h(
+      "svg.bars",
+      {
+        role: "img",
+        "aria-label": `Histogram: ${title}, ${text}`,
+        viewBox: `0 0 ${counts.length} 1`,
+        preserveAspectRatio: "none",
+      },
+      counts.map((count, index) => {
+        const height = Math.log(1 + count) / highest;
+        return h("rect", { key: String(index), x: index + 0.05, y: 1 - height, width: 0.9, height });
+      }),
+    ),
+    h("p.hint.ends", h("span", duration(begin(first))), h("span", duration(begin(first + counts.length)))),
+  );
+}
+
+const begin = (bin) => 2 ** (bin / BINS);
+const duration = (ns) =>
+  ns < 1e6 ? `${Number((ns / 1000).toPrecision(3))} µs` : `${Number((ns / 1e6).toPrecision(3))} ms`;

@@ -129,7 +129,8 @@ interface LiveTarget {
   state: Record<string, string>;
   /** The latched fault in a sentence, and the next steps of the user. */
   fault: { text: string; remedy: string } | null;
-  signals: { name: string; unit: string }[];
+  /** `loop`: a duration of the control loop, which is streamed but cannot be recorded around a trigger. */
+  signals: { name: string; unit: string; loop: boolean }[];
   /** The recording of every cycle; `number` counts those that can be read. */
   capture: { state: "none" | "recording" | "ready"; rows: number; wanted: number; number: number };
   setpoints: string[];

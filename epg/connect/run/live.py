@@ -30,6 +30,7 @@ from epg.live import client as protocol
 from epg.live.buckets import Bucket, Buckets
 from epg.live.capture import Recorded, progress_of, recorded_of
 from epg.live.client import Client, Lost, words_of
+from epg.live.durations import Durations
 from epg.live.faults import Faults
 from epg.live.found import ports
 from epg.live.history import History
@@ -141,6 +142,10 @@ class Live:
         """The motion since the page has seen the target being enabled.  Raises Refused."""
         return self._now().driven()
 
+    def durations(self) -> dict[str, Any]:
+        """The histograms of the loop's durations since the connection, by name.  Raises Refused."""
+        return self._now().durations()
+
     def state(self, program: str) -> dict[str, Any]:
         """The connection for the page's state.  ``program`` is the terminal of a program that runs, or empty."""
         connected = self._connected
@@ -192,14 +197,18 @@ class _Connection:
         try:
             self._state = self._client.command("stats")[0].removeprefix("stat ")
             self._parameters = self._client.description.parameters
-            self._names = [signal.name for signal in self._client.description.signals][:MOST]
+            found = self._client.description
+            self._signals = found.signals[: MOST - len(found.loop)] + found.loop
+            self._names = [signal.name for signal in self._signals]
             self._buckets = Buckets(len(self._names), WIDTH)
             self._history = History(len(self._names))
-            self._recording = Recording(Stream(self._names), [self._buckets, self._history])
+            self._durations = Durations([self._names.index(signal.name) for signal in found.loop])
+            self._recording = Recording(Stream(self._names), [self._buckets, self._history, self._durations])
             self._every = 0
             if self._names:
+                indices = [found.streamed.index(signal) for signal in self._signals]
                 with contextlib.suppress(protocol.Refused):  # a target without memory for streams
-                    self._every = self._recording.start(self._client, range(len(self._names)), 1)
+                    self._every = self._recording.start(self._client, indices, 1)
         except BaseException:
             self.close()
             raise
@@ -224,7 +233,9 @@ class _Connection:
             "every": self._every,
             "state": state,
             "fault": fault._asdict() if fault is not None else None,
-            "signals": [{"name": signal.name, "unit": signal.unit} for signal in found.signals[: len(self._names)]],
+            "signals": [
+                {"name": signal.name, "unit": signal.unit, "loop": signal in found.loop} for signal in self._signals
+            ],
             "capture": dict(self._capture),
             "setpoints": list(found.setpoints),
             "actuators": list(found.actuators),
@@ -335,6 +346,10 @@ class _Connection:
             "columns": [[value if math.isfinite(value) else None for value in column] for column in columns],
             "triggered": recorded.triggered,
         }
+
+    def durations(self) -> dict[str, Any]:
+        names = [signal.name for signal in self._client.description.loop]
+        return {name: found.data() for name, found in zip(names, self._durations.histograms, strict=True)}
 
     def close(self) -> None:
         self._over.set()

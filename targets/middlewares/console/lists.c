@@ -179,6 +179,11 @@ static bool value_line(epg_console_session_t *session, const char *category, con
     return false;
 }
 
+static const char *const loop_values[EPG_LOOP_VALUES] = {
+    [EPG_LOOP_LATENESS] = "lateness",
+    [EPG_LOOP_COMPUTATION] = "computation",
+};
+
 static bool ports_line(epg_console_session_t *session, size_t index)
 {
     const epg_target_t *target = session->target;
@@ -192,6 +197,13 @@ static bool ports_line(epg_console_session_t *session, size_t index)
         return true;
     }
     index -= target->signal_count;
+    if (target->application->telemetry != NULL) {
+        if (index < EPG_LOOP_VALUES) {
+            port(session, "loop", loop_values[index], "ns");
+            return true;
+        }
+        index -= EPG_LOOP_VALUES;
+    }
     if (jog != NULL && index < jog->actuator_count) {
         port(session, "actuator", jog->actuators[index].name, "");
         return true;

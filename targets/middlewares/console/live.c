@@ -42,6 +42,16 @@ static void end_stream(epg_console_session_t *session)
     }
 }
 
+/** Returns the value with this index in the answer of `ports`: a signal, or a value of the loop; NULL: there is none. */
+static const double *value_at(const epg_target_t *target, size_t index)
+{
+    if (index < target->signal_count) {
+        return target->signals[index].value;
+    }
+    index -= target->signal_count;
+    return index < EPG_LOOP_VALUES ? &target->control->loop[index] : NULL;
+}
+
 /** Reads the message of a stream.  Reports a mistake and returns false. */
 static bool read_stream(epg_console_session_t *session, const uint8_t *bytes, size_t length,
                         epg_telemetry_request_t *request)
@@ -54,12 +64,11 @@ static bool read_stream(epg_console_session_t *session, const uint8_t *bytes, si
     request->every = whole_number(bytes, 4);
     request->columns = (length - 4) / 2;
     for (size_t i = 0; i < request->columns; i++) {
-        const uint32_t index = whole_number(&bytes[4 + 2 * i], 2);
-        if (index >= target->signal_count) {
+        request->signals[i] = value_at(target, whole_number(&bytes[4 + 2 * i], 2));
+        if (request->signals[i] == NULL) {
             epg_console_error(session, "stream", "there is no signal with this index", NULL);
             return false;
         }
-        request->signals[i] = target->signals[index].value;
     }
     return true;
 }

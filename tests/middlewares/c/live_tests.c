@@ -277,6 +277,32 @@ TEST(a_stream_has_a_row_of_every_cycle)
     CHECK(number >= 205);
 }
 
+TEST(a_stream_can_have_the_times_of_the_loop)
+{
+    begin(true);
+    fake.step_ns = 2000;
+    bench_run(50);
+    stream(3, 1, 2, (const unsigned char[]){4, 5});
+    bench_run(10);
+    fake.step_ns = 5000;
+    fake_late_cycle(700, 0);
+    bench_run(10);
+    unsigned int late = 0;
+    float computation = -1.0F;
+    for (message_t rows = next('D'); rows.length > 0; rows = next('D')) {
+        for (size_t at = 13; at < rows.length; at += 8) {
+            const float lateness = value_in(&rows.bytes[at]);
+            const float expected = computation < 0.0F ? 0.0F : late > 0 ? 5000.0F : 2000.0F;
+            computation = value_in(&rows.bytes[at + 4]); /* of the cycle before */
+            CHECK_EQUAL(computation, expected);
+            CHECK(lateness == 0.0F || lateness == 700.0F);
+            late += lateness > 0.0F ? 1U : 0U;
+        }
+    }
+    CHECK_EQUAL(late, 1);
+    CHECK_EQUAL(computation, 5000.0F);
+}
+
 TEST(rows_without_room_are_dropped_whole_and_leave_a_gap)
 {
     begin(true);
@@ -309,7 +335,7 @@ TEST(a_stream_that_is_impossible_is_refused)
     stream(3, 0, 1, (const unsigned char[]){0});
     stream(4, 1, 0, NULL);
     stream(5, 1, 33, (const unsigned char[33]){0});
-    stream(6, 1, 1, (const unsigned char[]){4});
+    stream(6, 1, 1, (const unsigned char[]){6});
     bench.options.transport_rate = 11520;
     stream(7, 1, 4, (const unsigned char[]){0, 1, 2, 3});
     bench_run(10);
@@ -520,8 +546,9 @@ TEST(any_bytes_are_harmless)
 RUN(ENTRY(a_command_in_a_frame_has_its_answer_in_frames_with_its_tag), ENTRY(a_line_that_answers_no_command_has_tag_0),
     ENTRY(damaged_frames_do_nothing), ENTRY(lines_of_text_work_between_frames),
     ENTRY(a_movement_lasts_while_it_is_renewed), ENTRY(a_movement_ends_with_the_program),
-    ENTRY(a_stream_has_a_row_of_every_cycle), ENTRY(rows_without_room_are_dropped_whole_and_leave_a_gap),
-    ENTRY(a_stream_that_is_impossible_is_refused), ENTRY(a_stream_and_a_recording_share_the_memory),
+    ENTRY(a_stream_has_a_row_of_every_cycle), ENTRY(a_stream_can_have_the_times_of_the_loop),
+    ENTRY(rows_without_room_are_dropped_whole_and_leave_a_gap), ENTRY(a_stream_that_is_impossible_is_refused),
+    ENTRY(a_stream_and_a_recording_share_the_memory),
     ENTRY(a_stream_ends_with_the_connection_and_with_the_silence_of_the_program),
     ENTRY(a_target_on_a_lease_stays_enabled_while_its_numbers_come_back), ENTRY(a_lease_without_a_response_ends),
     ENTRY(the_control_side_ends_a_lease_by_itself), ENTRY(only_numbers_of_the_last_300_ms_count),

@@ -138,6 +138,13 @@ typedef struct epg_application {
 
 typedef struct epg_control epg_control_t;
 
+/** Values about the control loop that streams can contain beside the signals, in ns. */
+typedef enum epg_loop_value {
+    EPG_LOOP_LATENESS,    /**< start of this cycle after its tick */
+    EPG_LOOP_COMPUTATION, /**< computation time of the cycle before; 0 in the first row */
+    EPG_LOOP_VALUES
+} epg_loop_value_t;
+
 /** The points at which the user's program takes part in a target (epg/access.h). */
 typedef enum epg_access_point {
     EPG_ACCESS_BEGIN,   /**< after the setpoints of the communication side; the result is true if there are new ones */
@@ -196,6 +203,8 @@ struct epg_control {
     epg_status_t status_buffers[4];
     epg_exchange_t observer_exchange; /**< for epg_control_observe() */
     epg_status_t observer_buffers[4];
+    double loop[EPG_LOOP_VALUES];   /**< for streams; control side */
+    uint64_t loop_total;            /**< computation time of all cycles up to the last one with a stream, ns */
     atomic_bool observed;           /**< epg_control_observe() has been called */
     atomic_bool reset;              /**< epg_control_reset() was called; the next cycle clears it */
     epg_access_t *_Atomic accesses; /**< the first access of the user's program; NULL: none is used */

@@ -9,7 +9,7 @@
  * the receiver sees each gap.
  *
  *     epg_telemetry_start(&telemetry, &request, memory, capacity);              // communication side
- *     // epg_telemetry_cycle() puts rows into the ring                           // control side, at the end of a cycle
+ *     // epg_control_cycle() puts rows into the ring                             // control side, at the end of a cycle
  *     while (epg_telemetry_row(&telemetry, &row)) { ...; epg_telemetry_drop(&telemetry); }
  *
  * Capture (epg/capture.h) records a limited time without gaps, and is read afterwards.
@@ -63,14 +63,6 @@ void epg_telemetry_clear(epg_telemetry_t *telemetry);
 
 /** Puts the row of a stream that runs into its ring, or drops the row if the ring is full. */
 void epg_telemetry_put(epg_telemetry_t *telemetry, uint64_t tick_ns);
-
-/** Takes part in the cycle of `tick_ns`.  Called at the end of each cycle; one comparison if no stream runs. */
-static inline void epg_telemetry_cycle(epg_telemetry_t *telemetry, uint64_t tick_ns)
-{
-    if (epg_handover_there(&telemetry->handover)) {
-        epg_telemetry_put(telemetry, tick_ns);
-    }
-}
 
 /* Communication side ----------------------------------------------------------------------------------------- */
 

@@ -281,6 +281,17 @@ static void count_silence(epg_control_t *control)
     }
 }
 
+/** Sets the values about the loop before the row of a stream is taken. */
+static void set_loop_values(epg_control_t *control, uint64_t tick_ns)
+{
+    const uint64_t total = control->statistics.computation_total;
+    const uint64_t computation = control->application->telemetry->number == 0U ? 0U : total - control->loop_total;
+    const uint64_t lateness = control->sampled_ns > tick_ns ? control->sampled_ns - tick_ns : 0U;
+    control->loop[EPG_LOOP_LATENESS] = (double)saturated(lateness);
+    control->loop[EPG_LOOP_COMPUTATION] = (double)saturated(computation);
+    control->loop_total = total;
+}
+
 static void publish_status(epg_control_t *control)
 {
     control->statistics.reconnects = newest(&control->reconnects);
@@ -331,8 +342,9 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
     if (application->capture != NULL && epg_handover_there(&application->capture->handover)) {
         epg_capture_cycle(application->capture, tick_ns, control->fault != EPG_FAULT_NONE);
     }
-    if (application->telemetry != NULL) {
-        epg_telemetry_cycle(application->telemetry, tick_ns);
+    if (application->telemetry != NULL && epg_handover_there(&application->telemetry->handover)) {
+        set_loop_values(control, tick_ns);
+        epg_telemetry_put(application->telemetry, tick_ns);
     }
 
     const uint64_t next_ns = tick_ns + application->period_ns;
