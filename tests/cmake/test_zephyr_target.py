@@ -228,11 +228,15 @@ def test_every_difference_is_reported_at_once(project: Project) -> None:
 def test_the_target_that_connects_says_how_zephyr_is_built(
     project: Project, given: tuple[str, ...], built_by: str, above: str
 ) -> None:
-    """By west if west configures; an image of sysbuild is built in the folder around its own."""
+    """By west if west configures; an image of sysbuild is built in the folder around its own.
+
+    The targets ``robot_connect`` and ``robot_live`` say the same.
+    """
     project.configure(*FINE, *(f"-D{name}={sys.executable}" for name in given), *(["-DSYSBUILD=ON"] if above else []))
     rules = (project.build_folder / "build.ninja").read_text()
-    (said,) = re.findall(r"__main__\.py connect --name robot .*--build-dir (\S+) --built-by (\w+)", rules)
-    assert said == (str((project.build_folder / above).resolve()), built_by)
+    said = re.findall(r"__main__\.py connect --name robot .*--build-dir (\S+) --built-by (\w+)(.*)", rules)
+    expected = (str((project.build_folder / above).resolve()), built_by)
+    assert [(folder, program, "--live" in rest) for folder, program, rest in said] == [(*expected, False), (*expected, True)]
 
 
 def test_the_image_of_a_target_of_a_system(project: Project) -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 
 from epg.cli.report import format_diagnostics
 from epg.diagnostics import UserError
@@ -363,6 +364,6 @@ def test_the_names_of_faults_are_those_of_the_runtime() -> None:
         assert found, name
         known[number] = found[1]
     for kind in sorted((REPOSITORY / "targets/components").glob("*/component.yaml")):
-        text = kind.read_text(encoding="utf-8")
-        known |= {int(n): name for name, n in re.findall(r"^  ([\w -]+): \{number: (\d+),", text, re.MULTILINE)}
+        faults = yaml.safe_load(kind.read_text(encoding="utf-8")).get("faults", {})
+        known |= {fault["number"]: name for name, fault in faults.items() if "number" in fault}
     assert dict(sorted(known.items())) == {0: "none", **FAULTS}
