@@ -66,4 +66,3 @@ class Durations:
 
     def close(self) -> None:
         """Nothing has to be closed."""
-

@@ -236,7 +236,10 @@ def test_the_target_that_connects_says_how_zephyr_is_built(
     rules = (project.build_folder / "build.ninja").read_text()
     said = re.findall(r"__main__\.py connect --name robot .*--build-dir (\S+) --built-by (\w+)(.*)", rules)
     expected = (str((project.build_folder / above).resolve()), built_by)
-    assert [(folder, program, "--live" in rest) for folder, program, rest in said] == [(*expected, False), (*expected, True)]
+    assert [(folder, program, "--live" in rest) for folder, program, rest in said] == [
+        (*expected, False),
+        (*expected, True),
+    ]
 
 
 def test_the_image_of_a_target_of_a_system(project: Project) -> None:

@@ -46,7 +46,10 @@ def test_a_target_describes_itself(target: Target) -> None:
     assert len(found.hash) == 16
     assert found.setpoints == ("pan_subscriber", "tilt_subscriber")
     assert ("inputs.position_pan", "rad") in [(signal.name, signal.unit) for signal in found.signals]
-    assert [(signal.name, signal.unit) for signal in found.loop] == [("loop.lateness", "ns"), ("loop.computation", "ns")]
+    assert [(signal.name, signal.unit) for signal in found.loop] == [
+        ("loop.lateness", "ns"),
+        ("loop.computation", "ns"),
+    ]
     assert found.streamed == found.signals + found.loop
     assert set(found.actuators) == {"pwm_pan", "pwm_tilt"}
     kp = next(parameter for parameter in found.parameters if parameter.name == "Pan\\PID\\kp")

@@ -130,7 +130,9 @@ def test_a_step_is_recorded_and_saved(page: Any) -> None:
     page.get_by_text("Loop timing").click()
     page.get_by_role("meter", name=re.compile(r"^Longest cycle: [\d.]+ % of the control period")).wait_for()
     assert re.search(r"Cycles\s+\d{3}", page.get_by_role("table").inner_text())
-    bars = page.get_by_role("img", name=re.compile(r"^Histogram: Computation of a cycle, [\d,]+ cycles, median [\d.]+ µs"))
+    bars = page.get_by_role(
+        "img", name=re.compile(r"^Histogram: Computation of a cycle, [\d,]+ cycles, median [\d.]+ µs")
+    )
     assert bars.locator("rect").count() > 2
     assert violations(page) == []
 
