@@ -29,7 +29,7 @@ PYTHON_NEEDS = "elftools, packaging, pykwalify, west, yaml"
 """Modules that Zephyr's build imports (its scripts/requirements-base.txt)."""
 
 
-TWISTER_NEEDS = "colorama, jsonschema, junitparser, natsort, ply, psutil, pytest, tabulate"
+TWISTER_NEEDS = "anytree, colorama, jsonschema, junitparser, natsort, ply, psutil, pytest, tabulate"
 """More modules, which Zephyr's test runner imports (its scripts/requirements-build-test.txt and -run-test.txt)."""
 
 
