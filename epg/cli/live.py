@@ -27,7 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=Path,
         nargs="?",
         metavar="PORT",
-        help="serial port, or terminal of a host program; none: lists them",
+        help="serial port, terminal of a host program, or udp:HOST:PORT; none: lists them",
     )
     parser.add_argument(
         "--baud", type=int, default=115200, metavar="N", help="bits per second of a UART; default: 115200"
@@ -57,9 +57,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.live.client import Client, Lost, Refused
-    from epg.live.port import Port, PortError
+    from epg.live.open import open_port
+    from epg.live.port import PortError
     from epg.live.rows import Recording, Stream
     from epg.live.screen import Screen, Values
+    from epg.live.udp import PortTaken, disable, is_udp
 
     if options.port is None:
         return _list(options)
@@ -69,7 +71,9 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     diagnostics.stop_if_errors()
     relay = _Relay()
     try:
-        with Port(options.port, options.baud) as port:
+        if options.send[:1] == ["disable"] and is_udp(options.port):
+            disable(options.port)  # this acts at once, also while another program uses the target
+        with open_port(options.port, options.baud) as port:
             client = Client(port, relay.told, relay.numbered)
             try:
                 names = _chosen(client, options)
@@ -97,6 +101,9 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
             finally:
                 client.stop()
     except PortError as problem:
+        if isinstance(problem, PortTaken) and options.send == ["disable"]:
+            print("ok disable")
+            return 0
         diagnostics.error("live-port", Span(str(options.port)), str(problem), hint=problem.hint)
     except Refused as problem:
         return _failed(
@@ -252,7 +259,7 @@ def _list(options: argparse.Namespace) -> int:
         ]
         print(table(("port", "target", "device"), rows))
     else:
-        print("there are no serial ports; a host program has one with --console-pty PATH")
+        print("there are no serial ports; a host program has one with --console-pty PATH, or --console-udp PORT")
     return 0
 
 

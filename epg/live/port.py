@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ports of a target: a serial port, or the terminal of a host program.
+"""Serial ports of a target, and the terminal of a host program.
 
 A port belongs to one program at a time.  Others are told which program has it.
 """

@@ -91,7 +91,7 @@ function portsPart({ ports, console }) {
     h(
       "p.empty",
       console
-        ? "Watch and tune a running target: a board with the console on a serial port, or a program on this computer."
+        ? "Watch and tune a running target: a board with the console on a serial port, or a program on this computer or on another one (udp:HOST:PORT)."
         : WITHOUT_CONSOLE,
     ),
     h("label", { for: "live-port" }, "Port "),

@@ -34,7 +34,8 @@ from epg.live.durations import Durations
 from epg.live.faults import Faults
 from epg.live.found import ports
 from epg.live.history import History
-from epg.live.port import Port, PortError
+from epg.live.open import open_port
+from epg.live.port import PortError
 from epg.live.rows import CsvFile, McapFile, Recording, Row, Sink, Stream
 
 PERIOD = 0.05
@@ -188,7 +189,7 @@ class _Connection:
         self._capture: dict[str, Any] = {"state": "none", "rows": 0, "wanted": 0, "number": 0}
         self._recorded: Recorded | None = None
         self._follower: threading.Thread | None = None
-        self._port = Port(path, baud)
+        self._port = open_port(path, baud)
         try:
             self._client = Client(self._port, self._told, self._numbered)
         except BaseException:

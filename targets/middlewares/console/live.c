@@ -182,10 +182,13 @@ void epg_console_enable_leased(epg_console_session_t *session)
 /** Extends the lease, if `number` was sent less than LEASE_MS ago. */
 static void take_response(epg_console_session_t *session, uint32_t number)
 {
-    const epg_console_live_t *live = &session->live;
+    epg_console_live_t *live = &session->live;
     const uint64_t sent_ns = live->sent_ns[number % EPG_CONSOLE_NUMBERS];
     const uint64_t until_ns = sent_ns + (uint64_t)LEASE_MS * MS;
-    if (live->leased && sent_ns != 0U && live->number - number < EPG_CONSOLE_NUMBERS && session->now_ns < until_ns) {
+    const bool newer = (int32_t)(number - live->returned) > 0; /* a network can repeat and reorder numbers */
+    if (live->leased && newer && sent_ns != 0U && live->number - number < EPG_CONSOLE_NUMBERS &&
+        session->now_ns < until_ns) {
+        live->returned = number;
         epg_control_extend(session->target->control, until_ns);
     }
 }

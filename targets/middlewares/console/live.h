@@ -34,8 +34,9 @@ typedef struct epg_console_live {
     uint8_t list_tag;  /**< tag of the command whose answer has several lines */
     uint8_t jog_tag;   /**< tag of the last jog */
 
-    bool leased;     /**< numbers are sent */
-    uint32_t number; /**< newest number */
+    bool leased;       /**< numbers are sent */
+    uint32_t number;   /**< newest number */
+    uint32_t returned; /**< newest number that came back */
     uint64_t
         sent_ns[EPG_CONSOLE_NUMBERS]; /**< when the newest numbers were sent, at index number % EPG_CONSOLE_NUMBERS */
     uint64_t number_ns;               /**< when the next number must be sent */

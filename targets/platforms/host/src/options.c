@@ -10,6 +10,7 @@
 
 #include "link.h"
 #include "number.h"
+#include "udp_address.h"
 
 /** The range of --pace.  The time-outs of a connection follow simulated time. */
 #define PACE_MIN 0.01
@@ -28,6 +29,10 @@ void epg_host_print_help(const char *name)
            "  --pace FACTOR        simulated time at FACTOR times real time, as a ROS 2 node with /clock\n"
            "  --console            reads commands from standard input, answers on standard output (real time)\n"
            "  --console-pty PATH   the same on a terminal with this name, like the serial port of a board\n"
+           "  --console-udp [ADDRESS:]PORT\n"
+           "                       the same by UDP, for 'epg live udp:HOST:PORT'; default address: 127.0.0.1.\n"
+           "                       Anyone who can send datagrams to the address can move the robot: use a network\n"
+           "                       address only in a network of the robot's own, or through a VPN such as WireGuard\n"
            "  --agent HOST:PORT    address of the ROS 2 agent (real time; default: as in the .tcf)\n"
            "  --serial-device PATH serial device of the ROS 2 agent, such as /dev/ttyUSB0\n"
            "  --store FILE         file in which the console and ROS 2 store parameters\n"
@@ -103,16 +108,45 @@ static void refuse_unknown(const char *argument)
     }
 }
 
+/** True if there is at most one console, in real time; false after a message. */
+static bool consoles_fit(const epg_host_options_t *options)
+{
+    const char *given[3];
+    size_t count = 0;
+    if (options->console) {
+        given[count++] = "--console";
+    }
+    if (options->console_pty != NULL) {
+        given[count++] = "--console-pty";
+    }
+    if (options->console_udp != NULL) {
+        given[count++] = "--console-udp";
+    }
+    if (count > 1) {
+        fprintf(stderr, "error: %s and %s\nhint: a target has one console: remove one of the options\n", given[0],
+                given[1]);
+        return false;
+    }
+    if (count > 0 && !options->realtime) {
+        fprintf(stderr, "error: %s without --realtime\nhint: a console needs real time: add --realtime\n", given[0]);
+        return false;
+    }
+    epg_host_udp_address_t address;
+    if (options->console_udp != NULL && (!epg_host_udp_address_split(options->console_udp, &address) ||
+                                         (strchr(address.host, ':') != NULL && options->console_udp[0] != '['))) {
+        fprintf(stderr,
+                "error: --console-udp '%s' is not [ADDRESS:]PORT\n"
+                "hint: for example --console-udp 7000, or 192.168.1.10:7000, or [::1]:7000\n",
+                options->console_udp);
+        return false;
+    }
+    return true;
+}
+
 /** True if the options can be combined; false after a message. */
 static bool fit_together(const epg_host_options_t *options)
 {
-    if ((options->console || options->console_pty != NULL) && !options->realtime) {
-        fputs("error: --console without --realtime\nhint: a console needs real time: add --realtime\n", stderr);
-        return false;
-    }
-    if (options->console && options->console_pty != NULL) {
-        fputs("error: --console and --console-pty\nhint: a target has one console: remove one of the options\n",
-              stderr);
+    if (!consoles_fit(options)) {
         return false;
     }
     if (options->agent != NULL && options->device != NULL) {
@@ -173,6 +207,7 @@ bool epg_host_read_options(int argc, char **argv, bool connected, epg_host_optio
         {"--statistics", NULL, &options->statistics},
         {"--console", &options->console, NULL},
         {"--console-pty", NULL, &options->console_pty},
+        {"--console-udp", NULL, &options->console_udp},
         {"--store", NULL, &options->store},
         {"--serial", NULL, &options->serial},
         {"--interface", &options->interface, NULL},
@@ -206,7 +241,7 @@ bool epg_host_complete_options(const char *duration, bool connected, epg_host_op
     if (!fit_together(options)) {
         return false;
     }
-    const bool served = options->console || options->console_pty != NULL || (epg_host_connects(options) && connected);
+    const bool served = epg_host_has_console(options) || (epg_host_connects(options) && connected);
     if (duration == NULL && served && options->trace == NULL) {
         options->duration_ns = UINT64_MAX;
         return true;

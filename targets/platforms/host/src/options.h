@@ -25,6 +25,7 @@ typedef struct epg_host_options {
     const char *agent;       /**< address of the agent, HOST:PORT; NULL: the generated one */
     const char *device;      /**< path of the agent's terminal, in place of an address; NULL: not given */
     const char *console_pty; /**< name of the console's terminal; NULL: none */
+    const char *console_udp; /**< address of the console's socket, [ADDRESS:]PORT; NULL: none */
     const char *store;       /**< path of the file for stored values; NULL: none */
     const char *serial;      /**< word that replaces "$serial" in names; NULL: not given */
     const char *setpoints;   /**< path of the setpoint file; NULL: none */
@@ -44,6 +45,12 @@ bool epg_host_read_options(int argc, char **argv, bool connected, epg_host_optio
 static inline bool epg_host_connects(const epg_host_options_t *options)
 {
     return options->realtime || options->pace > 0.0;
+}
+
+/** True if a run with these options has a console. */
+static inline bool epg_host_has_console(const epg_host_options_t *options)
+{
+    return options->console || options->console_pty != NULL || options->console_udp != NULL;
 }
 
 /**

@@ -3,8 +3,8 @@
  * @file
  * The middlewares that run beside the control loop in real time: the target's middleware, and its console.
  *
- * The target's middleware makes its own connection, or has a link to an agent, or uses the terminal.  In the first two
- * cases the terminal is free for a console.
+ * The target's middleware makes its own connection, or has a link to an agent, or uses the terminal or UDP socket of a
+ * console.  In the first two cases the terminal or socket is free for a console.
  */
 #ifndef EPG_HOST_SERVICES_H
 #define EPG_HOST_SERVICES_H
@@ -15,6 +15,7 @@
 #include "link.h"
 #include "options.h"
 #include "terminal.h"
+#include "udp_console.h"
 
 #include "epg/host.h"
 #include "epg/middleware.h"
@@ -25,6 +26,7 @@ typedef struct epg_host_services {
     const char *agent;             /**< address of the agent in messages; NULL: no messages about the connection */
     const char *state;             /**< state of the connection at the last message; NULL: not connected */
     epg_host_terminal_t *terminal; /**< NULL: no terminal */
+    epg_host_udp_console_t *udp;   /**< NULL: no console by UDP */
 } epg_host_services_t;
 
 /** True if the target's middleware makes its own connection. */
@@ -33,12 +35,12 @@ bool epg_host_connects_itself(const epg_target_t *target);
 /** True if the target's middleware has a connection other than a terminal. */
 bool epg_host_is_connected(const epg_host_target_t *host);
 
-/** The middleware that would use a terminal; NULL if none would. */
+/** The middleware that would be the console; NULL if none would. */
 const epg_middleware_t *epg_host_console(const epg_host_target_t *host);
 
 /**
- * Opens the link to the agent, if the target has an agent and the run is in real time, and the terminal of the console,
- * if `options` request one.  Returns DONE, or after a message the exit status.  Only one object can be open.
+ * Opens the link to the agent, if the target has an agent and the run is in real time, and the terminal or socket of the
+ * console, if `options` request one.  Returns DONE, or after a message the exit status.  Only one object can be open.
  */
 int epg_host_services_open(epg_host_services_t *services, const epg_host_target_t *host,
                            const epg_host_options_t *options);

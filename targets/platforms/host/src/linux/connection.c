@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The connections of a target's middlewares: by themselves, to an agent, or to a terminal.
+ * The connections of a target's middlewares: by themselves, to an agent, or to the user of a console.
  */
 #include "../services.h"
 
@@ -61,16 +61,19 @@ static int open_link(epg_host_services_t *services, const epg_host_target_t *hos
     return DONE;
 }
 
-static int open_terminal(epg_host_services_t *services, const epg_host_target_t *host,
-                         const epg_host_options_t *options)
+static int open_console(epg_host_services_t *services, const epg_host_target_t *host, const epg_host_options_t *options)
 {
-    if (!options->console && options->console_pty == NULL) {
+    if (!epg_host_has_console(options)) {
         return DONE;
     }
     if (epg_host_console(host) == NULL) {
         fprintf(stderr, "error: this target has no console\nhint: 'communication: {%s}' in the .tcf adds one\n",
                 epg_host_is_connected(host) ? "console: true" : "middleware: console");
         return WRONG_INPUT;
+    }
+    if (options->console_udp != NULL) {
+        services->udp = epg_host_udp_console_open(options->console_udp, host->target);
+        return services->udp != NULL ? DONE : FAILED;
     }
     if (options->console) {
         epg_host_terminal_standard(&terminal);
@@ -87,7 +90,7 @@ int epg_host_services_open(epg_host_services_t *services, const epg_host_target_
     *services = (epg_host_services_t){.target = host->target};
     int status = open_link(services, host, options);
     if (status == DONE) {
-        status = open_terminal(services, host, options);
+        status = open_console(services, host, options);
     }
     if (status != DONE) {
         epg_host_services_close(services);
@@ -100,10 +103,14 @@ void epg_host_services_close(epg_host_services_t *services)
     if (services->terminal != NULL) {
         epg_host_terminal_close(services->terminal);
     }
+    if (services->udp != NULL) {
+        epg_host_udp_console_close(services->udp);
+    }
     if (services->link != NULL) {
         epg_host_link_close(services->link);
     }
     services->terminal = NULL;
+    services->udp = NULL;
     services->link = NULL;
 }
 

@@ -12,18 +12,18 @@
 #include "../clock.h"
 #include "epg/port.h"
 
-enum { MS = 1000 * 1000, LONGEST_SLEEP_NS = MS, MOST_FILES = 2 };
+enum { MS = 1000 * 1000, LONGEST_SLEEP_NS = MS, MOST_FILES = 3 };
 
-/** The target's middleware if it has a connection other than the terminal; NULL otherwise. */
+/** The target's middleware if it has a connection other than that of a console; NULL otherwise. */
 static const epg_middleware_t *connected(const epg_host_services_t *services)
 {
     return services->link != NULL || epg_host_connects_itself(services->target) ? services->target->middleware : NULL;
 }
 
-/** The middleware that uses the terminal; NULL if there is no terminal. */
-static const epg_middleware_t *on_terminal(const epg_host_services_t *services)
+/** The middleware that is the console; NULL if there is neither a terminal nor a socket for it. */
+static const epg_middleware_t *console_of(const epg_host_services_t *services)
 {
-    if (services->terminal == NULL) {
+    if (services->terminal == NULL && services->udp == NULL) {
         return NULL;
     }
     return services->target->console != NULL ? services->target->console : services->target->middleware;
@@ -31,22 +31,23 @@ static const epg_middleware_t *on_terminal(const epg_host_services_t *services)
 
 bool epg_host_services_run(const epg_host_services_t *services)
 {
-    return connected(services) != NULL || on_terminal(services) != NULL;
+    return connected(services) != NULL || console_of(services) != NULL;
 }
 
 void epg_host_services_start(const epg_host_services_t *services)
 {
     const epg_middleware_t *middleware = connected(services);
-    const epg_middleware_t *console = on_terminal(services);
+    const epg_middleware_t *console = console_of(services);
     if (middleware != NULL) {
         middleware->start(services->target, services->link != NULL ? &services->link->stream : NULL);
     }
     if (console != NULL) {
-        console->start(services->target, &services->terminal->stream);
+        console->start(services->target, services->udp != NULL ? epg_host_udp_console_stream(services->udp)
+                                                               : &services->terminal->stream);
     }
 }
 
-/** Sleeps until `time_ns`, or until bytes arrive at the link or the terminal. */
+/** Sleeps until `time_ns`, or until bytes arrive at the link or the console. */
 static void wait_for_files(const epg_host_services_t *services, uint64_t time_ns)
 {
     const uint64_t now_ns = epg_host_monotonic_ns();
@@ -59,13 +60,16 @@ static void wait_for_files(const epg_host_services_t *services, uint64_t time_ns
     if (services->terminal != NULL && epg_host_terminal_listens(services->terminal)) {
         entries[count++] = (struct pollfd){.fd = services->terminal->input, .events = POLLIN};
     }
+    if (services->udp != NULL) {
+        entries[count++] = (struct pollfd){.fd = epg_host_udp_console_file(services->udp), .events = POLLIN};
+    }
     (void)poll(entries, count, timeout_ms);
 }
 
 void epg_host_services_serve(epg_host_services_t *services, uint64_t time_ns)
 {
     const epg_middleware_t *middleware = connected(services);
-    const epg_middleware_t *console = on_terminal(services);
+    const epg_middleware_t *console = console_of(services);
     const uint64_t soon_ns = epg_host_monotonic_ns() + LONGEST_SLEEP_NS;
     const uint64_t until_ns = time_ns < soon_ns ? time_ns : soon_ns;
     if (middleware != NULL && middleware->wait != NULL) {
@@ -93,6 +97,6 @@ static void stop(const epg_middleware_t *middleware)
 
 void epg_host_services_stop(const epg_host_services_t *services)
 {
-    stop(on_terminal(services));
+    stop(console_of(services));
     stop(connected(services));
 }

@@ -15,18 +15,14 @@
 #include <unistd.h>
 
 #include "../link.h"
+#include "../udp_address.h"
 
-enum { LARGEST_PACKET = 65507, HOST_SIZE = 256 };
+enum { LARGEST_PACKET = 65507 };
 
 bool epg_host_link_is_address(const char *text)
 {
-    const char *colon = strrchr(text, ':');
-    char *end = NULL;
-    if (colon == NULL || colon == text || colon[1] < '0' || colon[1] > '9') {
-        return false;
-    }
-    const unsigned long port = strtoul(colon + 1, &end, 10);
-    return *end == '\0' && port > 0 && port <= 65535;
+    epg_host_udp_address_t parts;
+    return epg_host_udp_address_split(text, &parts) && parts.host[0] != '\0' && strtoul(parts.port, NULL, 10) > 0;
 }
 
 bool epg_host_link_open(epg_host_link_t *link, const char *agent, uint32_t baud_rate)
@@ -93,12 +89,8 @@ static int connect_to(const struct addrinfo *address)
 
 bool epg_host_link_udp(epg_host_link_t *link, const char *address)
 {
-    const char *colon = strrchr(address, ':');
-    char host[HOST_SIZE] = "";
-    const size_t length = (size_t)(colon - address);
-    const bool bracketed = address[0] == '[' && length > 2 && address[length - 1] == ']'; /* [::1]:8888 */
-    const size_t count = bracketed ? length - 2 : length;
-    memcpy(host, address + (bracketed ? 1 : 0), count < HOST_SIZE ? count : HOST_SIZE - 1);
+    epg_host_udp_address_t parts;
+    (void)epg_host_udp_address_split(address, &parts);
     const struct addrinfo wanted = {.ai_socktype = SOCK_DGRAM};
     struct addrinfo *found = NULL;
     *link = (epg_host_link_t){
@@ -110,9 +102,9 @@ bool epg_host_link_udp(epg_host_link_t *link, const char *address)
                    .datagrams = true},
         .file = -1,
     };
-    const int error = getaddrinfo(host, colon + 1, &wanted, &found);
+    const int error = getaddrinfo(parts.host, parts.port, &wanted, &found);
     if (error != 0) {
-        fprintf(stderr, "error: the agent's host '%s' was not found: %s\n", host, gai_strerror(error));
+        fprintf(stderr, "error: the agent's host '%s' was not found: %s\n", parts.host, gai_strerror(error));
         return false;
     }
     link->file = connect_to(found);
