@@ -57,7 +57,7 @@ def parse(name: str) -> tuple[str, int]:
 
     :raises PortError: it does not have this form
     """
-    found = re.fullmatch(r"udp:(?:(?:\[([^\]]+)\]|([^:\[\]]+)):)?(\d{1,5})", name, re.ASCII)
+    found = re.fullmatch(r"udp:(?:(?:\[([^\]]+)\]|([^:/\[\]]+)):)?(\d{1,5})", name, re.ASCII)
     if found is None or not 0 < int(found[3]) < 65536:
         raise PortError(
             f"'{name}' is not udp:HOST:PORT", "for example udp:192.168.1.10:7000, udp:[::1]:7000 or udp:robot:7000"
@@ -167,7 +167,10 @@ class UdpPort:
                         f"another program has {self.path}: {self._taken}",
                         f"end it; 'epg live {self.path} --send disable' disables the target all the same",
                     )
-                raise PortError(f"nothing answers at {self.path}", "a program listens with --console-udp; a firewall?")
+                raise PortError(
+                    f"nothing answers at {self.path}",
+                    "look at the address and the firewall; a program listens with --console-udp",
+                )
             self._send(_BEGIN, 0, b"")
             select.select([self._socket], [], [], AGAIN)
             self._receive()
@@ -217,7 +220,9 @@ class UdpPort:
             except ConnectionRefusedError as error:
                 raise self._gone() from error
             except OSError as error:
-                raise PortError(f"{self.path}: {error.strerror}", "look at the network") from error
+                if self._running:
+                    return  # the network can come back
+                raise PortError(f"{self.path}: {error.strerror}", "look at the address and the network") from error
             with self._lock:
                 self._take(data)
 

@@ -128,6 +128,23 @@ static void send_flags(const peer_t *peer, uint8_t flags, uint32_t session, cons
     (void)send_to(peer, data, EPG_HOST_UDP_HEADER + length);
 }
 
+/** Sends the whole lines of text that wait for a person. */
+static void send_text(void)
+{
+    epg_host_udp_session_t *session = &console.session;
+    size_t length = session->once_length;
+    while (length > 0 && session->once[length - 1] != '\n') {
+        length--;
+    }
+    if (length == 0 && session->once_length == sizeof session->once) {
+        length = session->once_length; /* a part of a very long line */
+    }
+    if (length > 0 && send_to(&console.peer, session->once, length)) {
+        session->once_length -= length;
+        memmove(session->once, session->once + length, session->once_length);
+    }
+}
+
 /** Tells the sender which address uses the target. */
 static void send_taken(bool person, uint32_t session)
 {
@@ -342,18 +359,22 @@ static bool connected(void *context)
 {
     (void)context;
     const uint64_t now_ns = epg_host_monotonic_ns();
-    for (int i = 0; i < PACKETS && !console.packet_waits && receive(); i++) {
+    bool more = receive();
+    for (int i = 1; more; i++) {
         epg_host_udp_header_t header;
         if (epg_host_udp_read_header(console.packet, console.packet_length, &header)) {
             take_of_program(&header, now_ns);
         } else if (is_text()) {
             take_of_person(now_ns);
         }
+        more = i < PACKETS && !console.packet_waits && receive();
     }
     end_if_silent(now_ns, false);
     answer_others(now_ns);
     if (console.user == PROGRAM) {
         epg_host_udp_session_poll(&console.session, now_ns);
+    } else if (console.user == PERSON) {
+        send_text();
     }
     const bool uses = console.user != NOBODY && !console.parting;
     console.parting = false;
@@ -374,8 +395,15 @@ static size_t write_bytes(void *context, const void *data, size_t size)
         epg_host_udp_session_poll(&console.session, epg_host_monotonic_ns());
         return count;
     }
-    const size_t count = size < EPG_HOST_UDP_DATAGRAM ? size : EPG_HOST_UDP_DATAGRAM;
-    return console.user == NOBODY || send_to(&console.peer, data, count) ? count : 0;
+    if (console.user == NOBODY) {
+        return size;
+    }
+    const size_t room = sizeof console.session.once - console.session.once_length;
+    const size_t count = size < room ? size : room;
+    memcpy(console.session.once + console.session.once_length, data, count);
+    console.session.once_length += count;
+    send_text();
+    return count;
 }
 
 static size_t writable(void *context)
