@@ -485,6 +485,27 @@ TEST(only_numbers_of_the_last_300_ms_count)
     }
 }
 
+TEST(a_number_that_comes_back_late_or_twice_does_not_shorten_the_lease)
+{
+    begin(false);
+    command(1, "enable leased");
+    bench_run(20);
+    unsigned char early[5] = {'R'};
+    unsigned char late[5] = {'R'};
+    memcpy(&early[1], &next('N').bytes[1], 4);
+    bench_run(200);
+    for (message_t number = next('N'); number.length == 5; number = next('N')) {
+        memcpy(&late[1], &number.bytes[1], 4);
+    }
+    send(late, sizeof late);
+    send(late, sizeof late);
+    send(early, sizeof early);
+    bench_run(200); /* 100 ms longer than the first number permits */
+    CHECK(fake_status().enabled);
+    bench_run(150);
+    CHECK(!fake_status().enabled);
+}
+
 TEST(a_lease_ends_neither_an_enabling_by_others_nor_starts_over_it)
 {
     begin(true);
@@ -552,4 +573,5 @@ RUN(ENTRY(a_command_in_a_frame_has_its_answer_in_frames_with_its_tag), ENTRY(a_l
     ENTRY(a_stream_ends_with_the_connection_and_with_the_silence_of_the_program),
     ENTRY(a_target_on_a_lease_stays_enabled_while_its_numbers_come_back), ENTRY(a_lease_without_a_response_ends),
     ENTRY(the_control_side_ends_a_lease_by_itself), ENTRY(only_numbers_of_the_last_300_ms_count),
+    ENTRY(a_number_that_comes_back_late_or_twice_does_not_shorten_the_lease),
     ENTRY(a_lease_ends_neither_an_enabling_by_others_nor_starts_over_it), ENTRY(any_bytes_are_harmless))

@@ -149,9 +149,9 @@ static void send_text(void)
 static void send_taken(bool person, uint32_t session)
 {
     char name[NAME];
-    char line[NAME + 64];
     name_of(&console.peer, name, sizeof name);
     if (person) {
+        char line[NAME + 64];
         const int length = snprintf(line, sizeof line, "error line %s has this target: only disable acts\r\n", name);
         (void)send_to(&console.sender, line, (size_t)length);
     } else {
