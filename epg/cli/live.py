@@ -115,6 +115,8 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         hint = (
             "the firmware needs the console on this port; reset the board, look at the cable; with a UART, check --baud"
         )
+        if is_udp(options.port):
+            hint = "look at the program and at the network, and connect again"
         return _failed(options, relay.lost, hint)
     return 0
 

@@ -24,6 +24,7 @@ from epg.diagnostics import Diagnostics
 from epg.new_project import ProjectRequest, write_project
 from tests.connect.page import Denied, Page, serving, session_of
 from tests.live.target import LATE, LEASE, Target
+from tests.live.udp_target import UdpTarget, client_of
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -71,6 +72,30 @@ def test_the_state_shows_the_target(page: Page, target: Target) -> None:
     page.post("live/disconnect")
     assert page.state()["live"]["target"] is None
     assert target.is_enabled(), "the page has not enabled it"
+
+
+def test_a_target_by_udp_is_connected(page: Page, jiwy_host: Path, tmp_path: Path) -> None:
+    target = UdpTarget(jiwy_host, tmp_path)
+    try:
+        for wrong, message in (("udp:robot", "is not udp:HOST:PORT"), ("udp:[::1]:9", "no program has udp:")):
+            with pytest.raises(Denied, match=message):
+                page.post("live/connect", path=wrong)
+        with client_of(target.port), pytest.raises(Denied, match=r"another program has udp:127\.0\.0\.1:"):
+            page.post("live/connect", path=str(target.port))
+        page.post("live/connect", path=str(target.port))
+        found = page.state()["live"]["target"]
+        assert (found["name"], found["path"], found["matches"]) == ("jiwy", str(target.port), True)
+        events = Events(page)
+        page.post("live/stop")
+        time.sleep(1)
+        assert page.state()["live"]["target"]["state"]["enabled"] == "0"
+        assert len([point for event in events.all for point in event["points"]]) > 50
+        assert events.all[-1]["dropped"] == 0
+        page.post("live/disconnect")
+        assert target.end()[-1]["enabled"] == 0
+    finally:
+        target.process.kill()
+        target.process.communicate()
 
 
 def test_points_have_the_least_and_the_greatest_value(page: Page, target: Target) -> None:

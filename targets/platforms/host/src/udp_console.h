@@ -4,7 +4,7 @@
  * The console by UDP: a stream between a middleware and one program or person at a time.
  *
  * A target has one user at a time: the address that spoke first, until it says goodbye or is silent.  Others are told
- * its address.  The command `disable` acts, whoever sends it.  docs/live.md defines the datagrams.
+ * its address.  The command `disable` acts for every sender.  docs/live.md defines the datagrams.
  *
  * It needs Linux, like real time.  Only one thread may use it.  No function waits.
  */

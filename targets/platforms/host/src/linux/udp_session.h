@@ -26,7 +26,7 @@ enum {
 enum {
     EPG_HOST_UDP_BEGIN = 1,  /**< the program wants to use the target, and has no answer yet */
     EPG_HOST_UDP_END = 2,    /**< the program does not use the target any more */
-    EPG_HOST_UDP_DISABLE = 4 /**< disables the target, whoever uses it */
+    EPG_HOST_UDP_DISABLE = 4 /**< disables the target, also while another program uses it */
 };
 
 /** Flags of a datagram from the target. */
