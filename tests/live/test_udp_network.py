@@ -229,12 +229,12 @@ def ip(*words: str) -> None:
 def computers() -> Iterator[tuple[str, str]]:
     """Two network namespaces with the addresses 10.77.0.1 and fd77::1, and 10.77.0.2 and fd77::2."""
     if os.geteuid() != 0:
-        pytest.skip("network namespaces need root")
+        pytest.skip("EPG: network namespaces need root")
     robot, desk = (f"epg_{name}_{os.getpid()}" for name in ("robot", "desk"))
     try:
         ip("netns", "add", robot)
     except (OSError, subprocess.CalledProcessError) as error:
-        pytest.skip(f"network namespaces cannot be made here: {error}")
+        pytest.skip(f"EPG: network namespaces cannot be made here: {error}")
     try:
         ip("netns", "add", desk)
         ip("link", "add", "wire1", "netns", robot, "type", "veth", "peer", "name", "wire2", "netns", desk)

@@ -23,6 +23,20 @@ static bool start(void *context, const char *title)
 epg_transport_t epg_native_sim_agent = {.start = start};
 epg_transport_t epg_native_sim_terminal = {.start = start};
 
+/* This platform has no option for a console by UDP. */
+
+epg_host_udp_console_t *epg_host_udp_console_open(const char *address, const epg_target_t *target)
+{
+    ARG_UNUSED(address);
+    ARG_UNUSED(target);
+    return NULL;
+}
+
+void epg_host_udp_console_close(epg_host_udp_console_t *console)
+{
+    ARG_UNUSED(console);
+}
+
 /* Start and end -------------------------------------------------------------------------------------------------- */
 
 int epg_native_sim_open_transports(void)
