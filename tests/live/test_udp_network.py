@@ -161,12 +161,16 @@ def test_a_network_that_loses_everything_is_noticed(target: UdpTarget) -> None:
         port = f"udp:{int(relay.stdout.readline())}"
         with client_of(Path(port)) as client:
             client._told = told.append
+            client.disable()
+            client.command("enable leased")
             relay.send_signal(signal.SIGSTOP)
             with pytest.raises(Lost):
                 client.command("set Pan\\PID\\kp=1")
             client._over.wait(5)
-            assert told == [f"lost {port} does not answer any more"]
+            assert told[-1] == f"lost {port} does not answer any more"
         relay.kill()
+    trace = target.end()
+    assert (trace[-1]["enabled"], trace[-1]["fault"], trace[-1][DUTY]) == (0, OPERATOR, 0)
 
 
 # Clients that fail
