@@ -144,11 +144,11 @@ def test_a_lease_holds_or_ends_safely(target: UdpTarget, bad: Path) -> None:
         assert client.command("enable leased") == ["ok enable"]
         time.sleep(4)
         state = client.command("stats")[0]
-        assert "enabled=1 leased=1 fault=none" in state or "enabled=0 leased=0 fault=operator" in state, state
+        assert "enabled=1 leased=1 fault=none" in state or "enabled=0 fault=operator" in state, state
     trace = target.end()
     first = next(index for index, row in enumerate(trace) if not row["enabled"])
     on = [row for row in trace[first:] if row["enabled"]]
-    assert len(on) > 500, "it stays enabled for longer than one lease"
+    assert len(on) > 350, "it stays enabled for longer than one lease"
     off = trace[trace.index(on[-1]) + 1 :]
     assert all(row[DUTY] == 0 for row in off)
 
