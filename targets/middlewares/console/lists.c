@@ -56,6 +56,17 @@ static const char *stored_name(const epg_parameters_t *parameters)
     return "nothing";
 }
 
+/** Appends " model=" with 16 hexadecimal digits. */
+static void model_word(epg_console_session_t *session, uint64_t model)
+{
+    char text[17];
+    for (unsigned int i = 0; i < 16U; i++) {
+        text[i] = "0123456789abcdef"[model >> (60U - 4U * i) & 15U];
+    }
+    text[16] = '\0';
+    epg_console_word(&session->output, "model", text);
+}
+
 void epg_console_version(epg_console_session_t *session, const epg_console_command_t *command)
 {
     const epg_target_t *target = session->target;
@@ -65,6 +76,7 @@ void epg_console_version(epg_console_session_t *session, const epg_console_comma
     epg_console_node(session);
     epg_console_word(&session->output, "epg", target->version);
     epg_console_word(&session->output, "hash", target->hash);
+    model_word(session, target->model);
     epg_console_key(&session->output, "period");
     epg_console_seconds(&session->output, target->application->period_ns);
     if (target->application->parameters != NULL) {
@@ -184,6 +196,11 @@ static const char *const loop_values[EPG_LOOP_VALUES] = {
     [EPG_LOOP_COMPUTATION] = "computation",
 };
 
+static const char *const replay_values[EPG_REPLAY_VALUES] = {
+    [EPG_REPLAY_CYCLE] = "cycle", [EPG_REPLAY_PARAMETER] = "parameter", [EPG_REPLAY_VALUE] = "value",
+    [EPG_REPLAY_ACTED] = "acted", [EPG_REPLAY_UNTOLD] = "untold",
+};
+
 static bool ports_line(epg_console_session_t *session, size_t index)
 {
     const epg_target_t *target = session->target;
@@ -203,6 +220,11 @@ static bool ports_line(epg_console_session_t *session, size_t index)
             return true;
         }
         index -= EPG_LOOP_VALUES;
+        if (index < EPG_REPLAY_VALUES) {
+            port(session, "replay", replay_values[index], "");
+            return true;
+        }
+        index -= EPG_REPLAY_VALUES;
     }
     if (jog != NULL && index < jog->actuator_count) {
         port(session, "actuator", jog->actuators[index].name, "");

@@ -16,10 +16,11 @@ enum {
     LEASE_MS = 300,    /* a lease ends this time after the sending of the newest number that was sent back */
     NUMBER_MS = 50,    /* time between two numbers */
     FRAMES = 2,        /* frames of rows per poll */
-    ROWS_SIZE = 216,   /* largest number of bytes of values in a frame */
+    ROWS_SIZE = 216,   /* largest number of bytes of values in a frame of several rows */
     ROWS_OVERHEAD = 1 + 4 + 8 + EPG_CONSOLE_FRAME_CRC + 4, /* bytes of a frame of rows without the values */
     RESERVE = 256,                                         /* bytes of output that rows leave free for answers */
-    MS = 1000000                                           /* ns */
+    EXACT = 0xFFFF, /* in the place of the first signal's index: the values are doubles */
+    MS = 1000000    /* ns */
 };
 
 static uint32_t whole_number(const uint8_t *bytes, size_t count)
@@ -42,26 +43,43 @@ static void end_stream(epg_console_session_t *session)
     }
 }
 
-/** Returns the value with this index in the answer of `ports`: a signal, or a value of the loop; NULL: there is none. */
+/** Returns the value with this index in the answer of `ports`: a signal, or one of loop or replay; NULL: there is none. */
 static const double *value_at(const epg_target_t *target, size_t index)
 {
     if (index < target->signal_count) {
         return target->signals[index].value;
     }
     index -= target->signal_count;
-    return index < EPG_LOOP_VALUES ? &target->control->loop[index] : NULL;
+    if (index < EPG_LOOP_VALUES) {
+        return &target->control->loop[index];
+    }
+    index -= EPG_LOOP_VALUES;
+    return index < EPG_REPLAY_VALUES ? &target->control->replay[index] : NULL;
 }
 
+/** A stream that a program asks for. */
+typedef struct stream {
+    epg_telemetry_request_t request;
+    size_t value_size; /**< bytes of a value */
+    size_t most;       /**< largest number of rows in a frame */
+} stream_t;
+
 /** Reads the message of a stream.  Reports a mistake and returns false. */
-static bool read_stream(epg_console_session_t *session, const uint8_t *bytes, size_t length,
-                        epg_telemetry_request_t *request)
+static bool read_stream(epg_console_session_t *session, const uint8_t *bytes, size_t length, stream_t *stream)
 {
     const epg_target_t *target = session->target;
-    if (length < 6 || length % 2 != 0 || (length - 4) / 2 > EPG_TELEMETRY_SIGNALS || whole_number(bytes, 4) == 0) {
+    epg_telemetry_request_t *request = &stream->request;
+    const bool exact = length >= 6 && whole_number(&bytes[4], 2) == EXACT;
+    const uint32_t every = length >= 4 ? whole_number(bytes, 4) : 0U;
+    if (exact) {
+        bytes += 2;
+        length -= 2;
+    }
+    if (length < 6 || length % 2 != 0 || (length - 4) / 2 > EPG_TELEMETRY_SIGNALS || every == 0) {
         epg_console_error(session, "stream", "a stream has 1 to 32 signals, and a row in at least every cycle", NULL);
         return false;
     }
-    request->every = whole_number(bytes, 4);
+    request->every = every;
     request->columns = (length - 4) / 2;
     for (size_t i = 0; i < request->columns; i++) {
         request->signals[i] = value_at(target, whole_number(&bytes[4 + 2 * i], 2));
@@ -70,17 +88,31 @@ static bool read_stream(epg_console_session_t *session, const uint8_t *bytes, si
             return false;
         }
     }
+    stream->value_size = exact ? sizeof(double) : sizeof(float);
+    const size_t row_size = stream->value_size * request->columns;
+    stream->most = row_size < ROWS_SIZE ? ROWS_SIZE / row_size : 1U;
     return true;
 }
 
-/** Returns true if the stream's bytes fit into 70 % of the transport's rate, else reports the mistake. */
-static bool fits(epg_console_session_t *session, const epg_telemetry_request_t *request)
+/** Bytes of output that must be free before a frame of rows is written. */
+static size_t needed_room(size_t most, size_t row_size)
 {
+    return RESERVE + (size_t)ROWS_OVERHEAD + (most > 1U ? (size_t)ROWS_SIZE : row_size);
+}
+
+/** Returns true if the stream's bytes fit into 70 % of the transport's rate, else reports the mistake. */
+static bool fits(epg_console_session_t *session, const stream_t *stream)
+{
+    const epg_telemetry_request_t *request = &stream->request;
+    const size_t row_size = stream->value_size * request->columns;
+    if (needed_room(stream->most, row_size) > session->options->output_size) {
+        epg_console_error(session, "stream", "a row is too long for the target's output of answers", NULL);
+        return false;
+    }
     const uint64_t rate = session->options->transport_rate;
     const uint64_t row_ns = request->every * session->target->application->period_ns;
-    const uint64_t rows_per_frame = ROWS_SIZE / (4U * request->columns);
-    const uint64_t frame = ROWS_OVERHEAD + rows_per_frame * request->columns * 4U;
-    const uint64_t bytes = frame * 1000000000U / (rows_per_frame * row_ns);
+    const uint64_t frame = ROWS_OVERHEAD + stream->most * row_size;
+    const uint64_t bytes = frame * 1000000000U / (stream->most * row_ns);
     if (rate == 0 || bytes <= rate / 10U * 7U) {
         return true;
     }
@@ -97,7 +129,8 @@ static void start_stream(epg_console_session_t *session, const uint8_t *bytes, s
 {
     const epg_application_t *application = session->target->application;
     epg_telemetry_t *telemetry = application->telemetry;
-    epg_telemetry_request_t request;
+    stream_t stream;
+    const epg_telemetry_request_t *request = &stream.request;
     if (telemetry != NULL && length == 0) {
         end_stream(session);
         epg_console_wait_for(session, "stream", EPG_CONSOLE_ENDING_STREAM);
@@ -107,19 +140,35 @@ static void start_stream(epg_console_session_t *session, const uint8_t *bytes, s
         epg_console_error(session, "stream", "this target has no memory for streams", NULL);
     } else if (!epg_telemetry_idle(telemetry)) {
         epg_console_error(session, "stream", "a stream runs: end it first", NULL);
-    } else if (read_stream(session, bytes, length, &request) && fits(session, &request)) {
+    } else if (read_stream(session, bytes, length, &stream) && fits(session, &stream)) {
         size_t room;
         double *memory = epg_capture_lend(application->capture, &room);
-        if (memory == NULL || epg_telemetry_depth(request.columns, room) == 0) {
+        if (memory == NULL || epg_telemetry_depth(request->columns, room) == 0) {
             epg_console_error(session, "stream", "a recording has the memory: end it first", NULL);
             return;
         }
-        session->live.streaming = epg_telemetry_start(telemetry, &request, memory, room);
-        session->live.columns = request.columns;
-        session->live.row_ns = request.every * application->period_ns;
+        session->live.streaming = epg_telemetry_start(telemetry, request, memory, room);
+        session->live.columns = request->columns;
+        session->live.value_size = stream.value_size;
+        session->live.most = stream.most;
+        session->live.row_ns = request->every * application->period_ns;
         epg_console_ok(session, "stream");
-        epg_console_count(&session->output, "rows", epg_telemetry_depth(request.columns, room));
+        epg_console_count(&session->output, "rows", epg_telemetry_depth(request->columns, room));
         epg_console_end_or_drop(&session->output);
+    }
+}
+
+static void put_value(epg_console_output_t *output, double value, bool exact)
+{
+    if (exact) {
+        uint64_t bits;
+        memcpy(&bits, &value, sizeof bits);
+        epg_console_whole_number(output, bits, sizeof bits);
+    } else {
+        const float rounded = (float)value;
+        uint32_t bits;
+        memcpy(&bits, &rounded, sizeof bits);
+        epg_console_whole_number(output, bits, sizeof bits);
     }
 }
 
@@ -128,29 +177,28 @@ static bool send_rows(epg_console_session_t *session)
 {
     epg_telemetry_t *telemetry = session->target->application->telemetry;
     epg_console_output_t *output = &session->output;
-    const size_t most = ROWS_SIZE / (sizeof(float) * session->live.columns);
+    const epg_console_live_t *live = &session->live;
+    const bool exact = live->value_size == sizeof(double);
     epg_telemetry_row_t row;
-    if (epg_console_output_room(output) < RESERVE + ROWS_SIZE + ROWS_OVERHEAD || !epg_telemetry_row(telemetry, &row)) {
+    if (epg_console_output_room(output) < needed_room(live->most, live->value_size * live->columns) ||
+        !epg_telemetry_row(telemetry, &row)) {
         return false;
     }
     uint64_t number = row.number;
     uint64_t tick_ns = row.tick_ns;
-    epg_console_begin_frame(output, EPG_CONSOLE_ROWS);
+    epg_console_begin_frame(output, exact ? EPG_CONSOLE_EXACT_ROWS : EPG_CONSOLE_ROWS);
     epg_console_whole_number(output, number, 4);
     epg_console_whole_number(output, tick_ns, 8);
-    for (size_t rows = 0; rows < most && row.number == number && row.tick_ns == tick_ns; rows++) {
-        for (size_t i = 0; i < session->live.columns; i++) {
-            const float value = (float)row.values[i];
-            uint32_t bits;
-            memcpy(&bits, &value, sizeof bits);
-            epg_console_whole_number(output, bits, sizeof bits);
+    for (size_t rows = 0; rows < live->most && row.number == number && row.tick_ns == tick_ns; rows++) {
+        for (size_t i = 0; i < live->columns; i++) {
+            put_value(output, row.values[i], exact);
         }
         epg_telemetry_drop(telemetry);
         if (!epg_telemetry_row(telemetry, &row)) {
             break;
         }
         number++;
-        tick_ns += session->live.row_ns;
+        tick_ns += live->row_ns;
     }
     epg_console_end_or_drop(output);
     return true;

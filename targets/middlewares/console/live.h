@@ -14,13 +14,15 @@
 
 /** Types of messages: the first byte of each.  Whole numbers follow with their least significant byte first. */
 typedef enum epg_console_message {
-    EPG_CONSOLE_COMMAND = 'C',  /**< to the console: tag (1 byte), command line */
-    EPG_CONSOLE_STREAM = 'S',   /**< to the console: tag (1), cycles per row (4), indices of signals (2 each) */
+    EPG_CONSOLE_COMMAND = 'C', /**< to the console: tag (1 byte), command line */
+    EPG_CONSOLE_STREAM = 'S', /**< to the console: tag (1), cycles per row (4), indices of signals (2 each; first 65535:
+                                     values of 8 bytes) */
     EPG_CONSOLE_RESPONSE = 'R', /**< to the console: a number that it sent (4) */
     EPG_CONSOLE_KEEP = 'K',     /**< to the console: the program is there */
     EPG_CONSOLE_ANSWER = 'A',   /**< from the console: tag of the command or 0 (1), line */
     EPG_CONSOLE_NUMBER = 'N',   /**< from the console: number (4), which a program on a lease must send back */
-    EPG_CONSOLE_ROWS = 'D' /**< from the console: first row's number (4) and tick in ns (8), values (float, 4 each) */
+    EPG_CONSOLE_ROWS = 'D', /**< from the console: first row's number (4) and tick in ns (8), values (float, 4 each) */
+    EPG_CONSOLE_EXACT_ROWS = 'E' /**< the same with values of 8 bytes (double) */
 } epg_console_message_t;
 
 enum { EPG_CONSOLE_NUMBERS = 8 };
@@ -43,7 +45,9 @@ typedef struct epg_console_live {
 
     bool streaming;
     size_t columns;
-    uint64_t row_ns; /**< time between two rows */
+    size_t value_size; /**< bytes of a value in a frame: 4 or 8 */
+    size_t most;       /**< largest number of rows in a frame */
+    uint64_t row_ns;   /**< time between two rows */
 } epg_console_live_t;
 
 #endif

@@ -63,6 +63,7 @@ static double applied[BENCH_PARAMETERS];
 static bool wanted[BENCH_PARAMETERS];
 static epg_parameter_limits_t limits[BENCH_PARAMETERS];
 static bool changed[BENCH_PARAMETERS];
+static uint32_t acted[BENCH_PARAMETERS];
 static unsigned char store_bytes[EPG_STORE_SIZE(BENCH_PARAMETERS)];
 
 static void set(const double *new_values, const bool *which)
@@ -143,6 +144,7 @@ void bench_start(bool enabled)
                    .publications = publications,
                    .version = "1.2.3",
                    .hash = "0123456789abcdef",
+                   .model = UINT64_C(0xfedcba9876543210),
                    .middleware = &epg_console,
                    .options = &bench.options,
                    .store = &bench.store,
@@ -162,7 +164,8 @@ void bench_start(bool enabled)
                        .wanted = wanted,
                        .limits = limits,
                        .applied = applied,
-                       .changed = changed},
+                       .changed = changed,
+                       .log.acted = acted},
         .store = {.bytes = store_bytes, .parameters = &bench.parameters},
         .capture = {.memory = memory, .capacity = BENCH_CAPTURE},
         .jog = {.actuator_count = 1,

@@ -23,9 +23,8 @@ TEST(it_greets)
 {
     bench_start(true);
     CHECK(strcmp(bench.out, "ready node=bench_node epg=1.2.3 hash=0123456789abcdef\r\n") == 0);
-    check_answer(
-        "version\n",
-        "ok version name=fake node=bench_node epg=1.2.3 hash=0123456789abcdef period=0.001 stored=nothing\r\n");
+    check_answer("version\n", "ok version name=fake node=bench_node epg=1.2.3 hash=0123456789abcdef "
+                              "model=fedcba9876543210 period=0.001 stored=nothing\r\n");
 }
 
 TEST(setpoints_of_one_line_act_in_one_cycle)
@@ -391,16 +390,16 @@ TEST(typing_is_shown_and_corrected)
 {
     bench_start(true);
     check_answer("echo on\r\n", "ok echo\r\n");
-    check_answer("verx\bsion\r\n", "verx\b \bsion\r\n"
-                                   "ok version name=fake node=bench_node epg=1.2.3 hash=0123456789abcdef period=0.001 "
-                                   "stored=nothing\r\n");
+    check_answer(
+        "verx\bsion\r\n",
+        "verx\b \bsion\r\n"
+        "ok version name=fake node=bench_node epg=1.2.3 hash=0123456789abcdef model=fedcba9876543210 period=0.001 "
+        "stored=nothing\r\n");
     check_answer("echo off\n", "echo off\r\nok echo\r\n");
-    check_answer(
-        "verxx\x7f\x7fsionx\b\n",
-        "ok version name=fake node=bench_node epg=1.2.3 hash=0123456789abcdef period=0.001 stored=nothing\r\n");
-    check_answer(
-        "garbage\x03version\n",
-        "ok version name=fake node=bench_node epg=1.2.3 hash=0123456789abcdef period=0.001 stored=nothing\r\n");
+    check_answer("verxx\x7f\x7fsionx\b\n", "ok version name=fake node=bench_node epg=1.2.3 hash=0123456789abcdef "
+                                           "model=fedcba9876543210 period=0.001 stored=nothing\r\n");
+    check_answer("garbage\x03version\n", "ok version name=fake node=bench_node epg=1.2.3 hash=0123456789abcdef "
+                                         "model=fedcba9876543210 period=0.001 stored=nothing\r\n");
     check_answer("echo\n", "error echo must be 'on' or 'off'\r\n");
 }
 
@@ -513,7 +512,9 @@ TEST(a_target_without_any_of_it)
     check_answer("save\n", "error save the actuators must be off: disable first\r\n");
     check_answer("capture duty\n", "error capture this target has no memory for recordings\r\n");
     check_answer("jog motor 0.1 5\n", "error jog this target has no jog\r\n");
-    check_answer("version\n", "ok version name=fake node=bench_node epg=1.2.3 hash=0123456789abcdef period=0.001\r\n");
+    check_answer(
+        "version\n",
+        "ok version name=fake node=bench_node epg=1.2.3 hash=0123456789abcdef model=fedcba9876543210 period=0.001\r\n");
 }
 
 /** Bytes, words and parts of commands in any order, while the reader connects, disconnects and reads at random. */

@@ -335,7 +335,7 @@ TEST(a_stream_that_is_impossible_is_refused)
     stream(3, 0, 1, (const unsigned char[]){0});
     stream(4, 1, 0, NULL);
     stream(5, 1, 33, (const unsigned char[33]){0});
-    stream(6, 1, 1, (const unsigned char[]){6});
+    stream(6, 1, 1, (const unsigned char[]){11});
     bench.options.transport_rate = 11520;
     stream(7, 1, 4, (const unsigned char[]){0, 1, 2, 3});
     bench_run(10);
@@ -350,6 +350,166 @@ TEST(a_stream_that_is_impossible_is_refused)
     stream(9, 3, 4, (const unsigned char[]){0, 1, 2, 3});
     bench_run(10);
     check_next(9, "error stream a stream runs: end it first");
+}
+
+/* Starts a stream of doubles. */
+static void exact_stream(unsigned char tag, size_t count, const unsigned char *signals)
+{
+    unsigned char message[LONGEST] = {'S', tag, 1, 0, 0, 0, 0xFF, 0xFF};
+    for (size_t i = 0; i < count; i++) {
+        message[8 + 2 * i] = signals[i];
+    }
+    send(message, 8 + 2 * count);
+}
+
+static double double_in(const unsigned char *bytes)
+{
+    const uint64_t bits = number_in(bytes) | (uint64_t)number_in(bytes + 4) << 32;
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+enum { CYCLE, PARAMETER, VALUE, ACTED, UNTOLD, SENSOR, COLUMNS };
+static const unsigned char replay_columns[COLUMNS] = {6, 7, 8, 9, 10, 1};
+static double table_of_rows[4096][COLUMNS];
+
+/* Reads all rows of doubles that have arrived, and returns their number. */
+static size_t read_rows(void)
+{
+    size_t count = 0;
+    for (message_t rows = next('E'); rows.length > 0; rows = next('E')) {
+        CHECK_EQUAL(number_in(&rows.bytes[1]), count);
+        CHECK_EQUAL((rows.length - 13) % (COLUMNS * sizeof(double)), 0);
+        for (size_t at = 13; at < rows.length; at += COLUMNS * sizeof(double)) {
+            for (size_t i = 0; i < COLUMNS; i++) {
+                table_of_rows[count][i] = double_in(&rows.bytes[at + i * sizeof(double)]);
+            }
+            count++;
+        }
+    }
+    return count;
+}
+
+/* Checks the change that a row tells; parameter -1: none. */
+static void check_told(size_t row, int parameter, double value, double acted)
+{
+    CHECK_EQUAL(table_of_rows[row][PARAMETER], (double)(parameter + 1));
+    if (parameter >= 0) {
+        CHECK_EQUAL(table_of_rows[row][VALUE], value);
+        CHECK_EQUAL(table_of_rows[row][ACTED], acted);
+    }
+}
+
+TEST(a_stream_of_doubles_has_every_bit_and_the_cycle_since_enabling)
+{
+    begin(false);
+    fake.sensor = 0.1;
+    exact_stream(3, COLUMNS, replay_columns);
+    bench_run(10);
+    check_next(3, "ok stream rows=18");
+    epg_control_request(&fake.control, true);
+    bench_run(50);
+    epg_control_request(&fake.control, false);
+    bench_run(5);
+    epg_control_request(&fake.control, true);
+    bench_run(20);
+    const size_t count = read_rows();
+    unsigned int enablings = 0;
+    double before = 0.0;
+    for (size_t row = 0; row < count; row++) {
+        const double cycle = table_of_rows[row][CYCLE];
+        CHECK_EQUAL(table_of_rows[row][SENSOR], 0.1);
+        CHECK(cycle == 0.0 || cycle == 1.0 || cycle == before + 1.0);
+        enablings += cycle == 1.0 ? 1U : 0U;
+        check_told(row, -1, 0.0, 0.0);
+        before = cycle;
+    }
+    CHECK_EQUAL(enablings, 2);
+    CHECK(count >= 80);
+}
+
+TEST(a_stream_tells_each_change_of_a_parameter_with_its_cycle)
+{
+    begin(false);
+    command(1, "set PID\\kp=3"); /* before the stream, and while disabled: it is told after the enabling */
+    bench_run(10);
+    exact_stream(3, COLUMNS, replay_columns);
+    command(4, "set PID\\tauD=0.125");
+    bench_run(10);
+    epg_control_request(&fake.control, true);
+    bench_run(20);
+    command(5, "set PID\\kp=4 PID\\tauD=0.25");
+    bench_run(20);
+    const size_t count = read_rows();
+    size_t first = 0;
+    while (table_of_rows[first][CYCLE] == 0.0) {
+        check_told(first++, -1, 0.0, 0.0);
+    }
+    CHECK_EQUAL(table_of_rows[first][UNTOLD], 1.0);
+    CHECK_EQUAL(table_of_rows[first][PARAMETER] + table_of_rows[first + 1][PARAMETER], 3.0);
+    for (size_t row = first; row < first + 2; row++) {
+        check_told(row, (int)table_of_rows[row][PARAMETER] - 1, table_of_rows[row][PARAMETER] < 2.0 ? 3.0 : 0.125, 1.0);
+    }
+    size_t later = first + 2;
+    while (table_of_rows[later][PARAMETER] == 0.0 && later < count) {
+        CHECK_EQUAL(table_of_rows[later++][UNTOLD], 0.0);
+    }
+    CHECK(later + 2 < count);
+    const double acted = table_of_rows[later][CYCLE];
+    for (size_t row = later; row < later + 2; row++) {
+        check_told(row, (int)table_of_rows[row][PARAMETER] - 1, table_of_rows[row][PARAMETER] < 2.0 ? 4.0 : 0.25,
+                   acted);
+    }
+    CHECK_EQUAL(table_of_rows[later + 2][PARAMETER], 0.0);
+}
+
+TEST(a_stream_says_that_it_could_not_tell_a_change)
+{
+    begin(true);
+    exact_stream(3, COLUMNS, replay_columns);
+    bench_run(10);
+    /* Two parameters change in each of two cycles: one of the first two is not yet told when it changes again. */
+    CHECK(epg_parameters_change(&bench.parameters, (const epg_parameter_change_t[]){{0, 1.0}, {1, 2.0}}, 2));
+    fake_cycle();
+    CHECK(epg_parameters_change(&bench.parameters, (const epg_parameter_change_t[]){{0, 3.0}, {1, 4.0}}, 2));
+    fake_cycle();
+    bench_run(10);
+    const size_t count = read_rows();
+    unsigned int lost = 0;
+    for (size_t row = 0; row < count; row++) {
+        lost += table_of_rows[row][PARAMETER] < 0.0 ? 1U : 0U;
+    }
+    CHECK_EQUAL(lost, 1);
+}
+
+TEST(a_stream_of_long_rows_needs_a_large_output)
+{
+    begin(true);
+    unsigned char all[32] = {0};
+    bench.options.output_size = 512;
+    exact_stream(3, 32, all);
+    bench.options.output_size = BENCH_OUTPUT;
+    bench_run(10);
+    check_next(3, "error stream a row is too long for the target's output of answers");
+    exact_stream(4, 0, NULL);
+    exact_stream(5, 33, (const unsigned char[33]){0});
+    bench_run(10);
+    check_next(4, "error stream a stream has 1 to 32 signals, and a row in at least every cycle");
+    check_next(5, "error stream a stream has 1 to 32 signals, and a row in at least every cycle");
+    exact_stream(6, 32, all);
+    bench_run(50);
+    check_next(6, "ok stream rows=4");
+    message_t rows = next('E');
+    CHECK_EQUAL(rows.length, 13 + 32 * 8);
+    CHECK(next('E').length > 0);
+    send("S\7", 2);
+    bench_run(10);
+    bench.options.transport_rate = 11520;
+    exact_stream(8, COLUMNS, replay_columns);
+    bench_run(10);
+    next('A');
+    check_next(8, "error stream needs 53250 bytes per second of 8064 that the transport has for streams");
 }
 
 TEST(a_stream_and_a_recording_share_the_memory)
@@ -541,6 +701,16 @@ TEST(any_bytes_are_harmless)
             length = 2 + strlen(line);
             memcpy(message + 2, line, strlen(line));
         }
+        if (message[0] == 'S' && rand() % 2 > 0) { /* a stream that exists, of floats or doubles */
+            message[2] |= 1;
+            length += length % 2;
+            for (size_t k = 3; k < length; k++) {
+                message[k] = k < 6 || k % 2 > 0 ? 0 : (unsigned char)(rand() % 12);
+            }
+            if (rand() % 2 > 0) {
+                message[6] = message[7] = 0xFF;
+            }
+        }
         unsigned char frame[LONGEST];
         const size_t size = encode(message, length, frame);
         if (rand() % 4 == 0) {
@@ -569,6 +739,9 @@ RUN(ENTRY(a_command_in_a_frame_has_its_answer_in_frames_with_its_tag), ENTRY(a_l
     ENTRY(a_movement_lasts_while_it_is_renewed), ENTRY(a_movement_ends_with_the_program),
     ENTRY(a_stream_has_a_row_of_every_cycle), ENTRY(a_stream_can_have_the_times_of_the_loop),
     ENTRY(rows_without_room_are_dropped_whole_and_leave_a_gap), ENTRY(a_stream_that_is_impossible_is_refused),
+    ENTRY(a_stream_of_doubles_has_every_bit_and_the_cycle_since_enabling),
+    ENTRY(a_stream_tells_each_change_of_a_parameter_with_its_cycle),
+    ENTRY(a_stream_says_that_it_could_not_tell_a_change), ENTRY(a_stream_of_long_rows_needs_a_large_output),
     ENTRY(a_stream_and_a_recording_share_the_memory),
     ENTRY(a_stream_ends_with_the_connection_and_with_the_silence_of_the_program),
     ENTRY(a_target_on_a_lease_stays_enabled_while_its_numbers_come_back), ENTRY(a_lease_without_a_response_ends),

@@ -145,6 +145,19 @@ typedef enum epg_loop_value {
     EPG_LOOP_VALUES
 } epg_loop_value_t;
 
+/**
+ * Values that a recording needs beside the signals, so that the run can be repeated from the initialisation of the model
+ * on.  Streams can contain them.
+ */
+typedef enum epg_replay_value {
+    EPG_REPLAY_CYCLE,     /**< number of this cycle, from 1 for the one that initialised the model; 0 while disabled */
+    EPG_REPLAY_PARAMETER, /**< 1 + the index of a parameter that changed (epg/parameter_log.h); 0: none; -1: unknown */
+    EPG_REPLAY_VALUE,     /**< its value after the change */
+    EPG_REPLAY_ACTED,     /**< the cycle in which the change acted */
+    EPG_REPLAY_UNTOLD,    /**< number of changes up to this cycle that the next rows tell */
+    EPG_REPLAY_VALUES
+} epg_replay_value_t;
+
 /** The points at which the user's program takes part in a target (epg/access.h). */
 typedef enum epg_access_point {
     EPG_ACCESS_BEGIN,   /**< after the setpoints of the communication side; the result is true if there are new ones */
@@ -203,10 +216,12 @@ struct epg_control {
     epg_status_t status_buffers[4];
     epg_exchange_t observer_exchange; /**< for epg_control_observe() */
     epg_status_t observer_buffers[4];
-    double loop[EPG_LOOP_VALUES];   /**< for streams; control side */
-    uint64_t loop_total;            /**< computation time of all cycles up to the last one with a stream, ns */
-    atomic_bool observed;           /**< epg_control_observe() has been called */
-    atomic_bool reset;              /**< epg_control_reset() was called; the next cycle clears it */
+    double loop[EPG_LOOP_VALUES];     /**< for streams; control side */
+    double replay[EPG_REPLAY_VALUES]; /**< for streams; control side */
+    uint32_t since_start; /**< number of the newest cycle, from 1 for the one that initialised the model; saturates */
+    uint64_t loop_total;  /**< computation time of all cycles up to the last one with a stream, ns */
+    atomic_bool observed; /**< epg_control_observe() has been called */
+    atomic_bool reset;    /**< epg_control_reset() was called; the next cycle clears it */
     epg_access_t *_Atomic accesses; /**< the first access of the user's program; NULL: none is used */
 };
 

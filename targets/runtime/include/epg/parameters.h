@@ -22,6 +22,7 @@
 #include <stdint.h>
 
 #include "epg/handover.h"
+#include "epg/parameter_log.h"
 
 typedef struct epg_parameter {
     const char *name; /**< as in the model: "PID1\kp" */
@@ -70,6 +71,7 @@ typedef struct epg_parameters {
 
     epg_parameters_stored_t stored;
     epg_handover_t handover; /**< of `values` and `wanted` */
+    epg_parameter_log_t log; /**< control side */
 } epg_parameters_t;
 
 /* Control side ----------------------------------------------------------------------------------------------- */

@@ -102,6 +102,7 @@ typedef struct epg_target {
 
     const char *version;                     /**< version of the EPG that generated this target */
     const char *hash;                        /**< hash of everything it was generated from: 16 hexadecimal digits */
+    uint64_t model;                          /**< identifies the model and the generated values of its parameters */
     const struct epg_middleware *middleware; /**< NULL: none is configured */
     const void *options;                     /**< options of the middleware; its header declares their type */
     const struct epg_middleware *console;    /**< console beside the middleware, on another stream; NULL: none */

@@ -50,6 +50,7 @@ static void change(epg_parameter_access_t *self, bool running)
             parameters->applied[i] = self->taken[i].value;
             parameters->changed[i] = true;
             self->which[i] = true;
+            epg_parameter_log_add(parameters, i);
         }
         any = any || self->which[i];
     }

@@ -168,6 +168,10 @@ static bool run_model(epg_control_t *control)
         control->initialise = false;
         control->model_valid = true;
         control->until_step = 0;
+        control->since_start = 1;
+        if (application->parameters != NULL && control->enabled) {
+            epg_parameter_log_restart(application->parameters);
+        }
     }
     if (!control->model_valid) {
         return false;
@@ -292,6 +296,43 @@ static void set_loop_values(epg_control_t *control, uint64_t tick_ns)
     control->loop_total = total;
 }
 
+/** Counts the cycles since the model was initialised, and lets the log note changes of parameters in this cycle. */
+static void count_since_start(epg_control_t *control, const epg_application_t *application)
+{
+    if (control->since_start < UINT32_MAX) {
+        control->since_start++;
+    }
+    if (application->parameters != NULL) {
+        const bool told =
+            control->enabled && application->telemetry != NULL && epg_handover_there(&application->telemetry->handover);
+        application->parameters->log.now = told ? control->since_start : 0U;
+    }
+}
+
+/** Sets the values for a replay before the row of a stream is taken. */
+static void set_replay_values(epg_control_t *control)
+{
+    epg_parameters_t *parameters = control->application->parameters;
+    epg_parameter_told_t told = {0};
+    size_t untold = 0;
+    if (parameters != NULL) {
+        if (control->application->telemetry->number == 0U) { /* the log has changes from the time before the stream */
+            const bool right = control->enabled && control->since_start == 1U;
+            if (!right) {
+                epg_parameter_log_clear(parameters);
+            }
+            parameters->log.lost = false;
+        }
+        told = epg_parameter_log_tell(parameters);
+        untold = parameters->log.untold;
+    }
+    control->replay[EPG_REPLAY_CYCLE] = control->enabled ? (double)control->since_start : 0.0;
+    control->replay[EPG_REPLAY_PARAMETER] = told.lost ? -1.0 : told.any ? (double)(told.index + 1U) : 0.0;
+    control->replay[EPG_REPLAY_VALUE] = told.value;
+    control->replay[EPG_REPLAY_ACTED] = (double)told.acted;
+    control->replay[EPG_REPLAY_UNTOLD] = (double)untold;
+}
+
 static void publish_status(epg_control_t *control)
 {
     control->statistics.reconnects = newest(&control->reconnects);
@@ -310,6 +351,7 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
     application->sample();
     count_lateness(control, tick_ns, begin_ns);
     control->time_ns = tick_ns;
+    count_since_start(control, application);
     command(control, application, begin_ns);
     application->read();
     if (application->parameters != NULL && epg_handover_there(&application->parameters->handover)) {
@@ -344,6 +386,7 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
     }
     if (application->telemetry != NULL && epg_handover_there(&application->telemetry->handover)) {
         set_loop_values(control, tick_ns);
+        set_replay_values(control);
         epg_telemetry_put(application->telemetry, tick_ns);
     }
 

@@ -16,6 +16,7 @@ void epg_parameters_apply(epg_parameters_t *parameters, bool running)
         if (parameters->wanted[i]) {
             parameters->applied[i] = parameters->values[i];
             parameters->changed[i] = true;
+            epg_parameter_log_add(parameters, i);
         }
     }
     if (running) {
