@@ -22,6 +22,7 @@ from epg.emit.claims import board_nodes, claims_of, tick_of
 from epg.emit.cmake import platform_files
 from epg.emit.fingerprint import LITERAL, model_hash
 from epg.emit.macros import Macros
+from epg.emit.model import rounded_functions
 from epg.emit.pins import pin_lists
 from epg.emit.ros_services import ros_services_of
 from epg.emit.service import MiddlewareView, service_of
@@ -121,6 +122,7 @@ class Emitter:
             "middleware_code": self._middleware_code(service.middleware),
             "console_code": self._middleware_code(service.console),
             "model_hash": model_hash(app.model, app.parameters),
+            "rounded": sorted(rounded_functions(app.model)),
             "version": __version__,
             "hash": LITERAL,
             "fail_safe": None,

@@ -93,7 +93,7 @@ class _Importer(ExportReader):
         step = self._step()
         method, method_code, method_at = self._method()
         check_method(method, method_code.file.word_span(method_at), self.diagnostics)
-        check_features(self.linked, roots, self.diagnostics)
+        rounded = check_features(self.linked, roots, self.diagnostics)
         check_variables(self.linked, self._prefix(), self.diagnostics)
         inputs_lines, outputs_lines = self._port_lines(roots)
         ports = [self._ports("input", inputs_lines), self._ports("output", outputs_lines)]
@@ -116,6 +116,7 @@ class _Importer(ExportReader):
             method=method,
             step=step,
             parameters=parameters,
+            rounded=rounded,
             details=self._details(
                 initialize,
                 self._elements(inputs_lines),

@@ -69,7 +69,7 @@ class _Importer(ExportReader):
         check_method(method, method_code.file.word_span(method_at), self.diagnostics)
         roots = list(self.methods.values())
         roots += [f for _, f in self.linked.functions() if f.owner == method and f.name in ("Initialize", "Step")]
-        check_features(self.linked, roots, self.diagnostics)
+        rounded = check_features(self.linked, roots, self.diagnostics)
         for name in (self.class_name, method):
             check_methods(self.linked, name, self.diagnostics)
         ports = [self._ports("input"), self._ports("output")]
@@ -89,6 +89,7 @@ class _Importer(ExportReader):
             method=method,
             step=step,
             parameters=parameters,
+            rounded=rounded,
             details=details.CppClassExport(
                 linked=self.linked,
                 class_name=self.class_name,

@@ -63,6 +63,14 @@ _LIBRARY = words(
     rand srand qsort bsearch exit abort assert defined offsetof va_start va_end va_arg static_assert
     """
 )
+ROUNDED = words(
+    """
+    acos asin atan atan2 cos cosh exp exp10 fmod log log10 pow sin sinh sqrt tan tanh cbrt exp2 expm1 log1p log2 hypot
+    asinh acosh atanh erf erfc tgamma lgamma remainder
+    """
+)
+"""Functions whose last bits depend on the C library."""
+
 _LIBRARY_ALL = _LIBRARY | {f"{name}f" for name in _LIBRARY} | HEAP | _FILES | _PRINTS | _CLOCKS
 _LIBRARY_ALL_CPP = _LIBRARY_ALL | words("min max swap move forward clamp fill copy begin end size")
 
@@ -102,8 +110,10 @@ def check_features(
     *,
     foreign: bool = False,
     allowed: frozenset[str] = frozenset(),
-) -> None:
+) -> frozenset[str]:
     """Reports code reachable from ``roots`` that a target cannot run, and warns of code with unexpected effects.
+
+    Returns the functions in :data:`ROUNDED` that the code calls.
 
     ``foreign`` code, of FMUs, has no known structure: the compiler checks which of its functions exist and are
     declared.  The code can call the functions in ``allowed``.
@@ -113,9 +123,12 @@ def check_features(
     _check_solver_arrays(linked, diagnostics)
     calls = _Calls(linked, reachable, diagnostics, foreign, allowed)
     causes = _Causes(foreign)
+    rounded: frozenset[str] = frozenset()
     for code, function in reachable:
         of_files = causes.look_at_types(code, function)
         for name, start in code.calls(function):
+            if name not in calls.known:
+                rounded |= rounded_in(f"{name}(")
             if name not in _LIBRARY_ALL and (is_declaration(code, start) or is_of_std(code, start)):
                 continue
             if causes.look_at_call(name, start, code, calls.known):
@@ -137,6 +150,14 @@ def check_features(
                 "XXDouble is float: the model computes in single precision, so results differ from those of 20-sim",
                 hint="change it to double",
             )
+    macros = (macro.value for code in linked.all for macro in code.macros)
+    return rounded | rounded_in(" ".join(macros))
+
+
+def rounded_in(text: str) -> frozenset[str]:
+    """The functions in :data:`ROUNDED` that are called in ``text``."""
+    called = set(_CALLED.findall(text))
+    return frozenset(called | {name.removesuffix("f") for name in called}) & ROUNDED
 
 
 class _Declarations:

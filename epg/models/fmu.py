@@ -73,7 +73,7 @@ def load_fmu(
     step = _step(description, own_step, step, step_span, diagnostics)
     if sources is None:
         return None
-    check_fmu(sources.linked, description.standard, diagnostics)
+    rounded = check_fmu(sources.linked, description.standard, diagnostics)
     check_guid(sources.codes.values(), description.guid, description.span, description.standard, diagnostics)
     inputs, outputs = (_ports(description, direction, diagnostics) for direction in ("input", "output"))
     parameters, places = _parameters(description)
@@ -97,6 +97,7 @@ def load_fmu(
         inputs=inputs,
         outputs=outputs,
         parameters=parameters,
+        rounded=rounded,
         directory=beside.parent if beside is not None else path,
         files=tuple(sorted({*files.inputs, *read, *([beside] if beside is not None else [])})),
         span=description.span,

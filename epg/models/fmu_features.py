@@ -32,11 +32,14 @@ SetFloat64 SetFloat32""".split()
 )
 
 
-def check_fmu(linked: Linked, standard: int, diagnostics: Diagnostics) -> None:
-    """Reports code that a target cannot run, and warns of code with unexpected effects."""
+def check_fmu(linked: Linked, standard: int, diagnostics: Diagnostics) -> frozenset[str]:
+    """Reports code that a target cannot run, and warns of code with unexpected effects.
+
+    Returns the functions that :func:`check_features` returns.
+    """
     running = _named(linked, standard, _RUN)
     starting = _named(linked, standard, _START)
-    check_features(linked, [*starting, *running], diagnostics, foreign=True, allowed=PROVIDED)
+    rounded = check_features(linked, [*starting, *running], diagnostics, foreign=True, allowed=PROVIDED)
     taking: list[tuple[str, Span]] = []
     for code, function in linked.reachable(running):
         body = code.body(function)
@@ -50,6 +53,7 @@ def check_fmu(linked: Linked, standard: int, diagnostics: Diagnostics) -> None:
         message = f"'{name}' allocates memory while the model runs, and does not free it{others}"
         hint = f"allocate it in fmi{standard}Instantiate{'CoSimulation' if standard == 3 else ''}, or use an array"
         diagnostics.error("model-heap", span, message, hint=hint)
+    return rounded
 
 
 def check_guid(codes: Collection[Code], guid: str, span: Span, standard: int, diagnostics: Diagnostics) -> None:

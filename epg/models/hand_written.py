@@ -13,11 +13,12 @@ from pathlib import Path
 
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.schema import load_schema, validate
-from epg.documents.source_file import is_includable, read_source
+from epg.documents.source_file import SourceFile, is_includable, read_source
 from epg.documents.text_file import is_file, is_folder, one_line
 from epg.documents.yaml_file import load_yaml, newer_version
 from epg.models import details
 from epg.models.c_code import Code, parse_code
+from epg.models.features import rounded_in
 from epg.models.folders import source_files
 from epg.models.hand_written_names import Names
 from epg.models.identifiers import is_reserved, to_identifier
@@ -85,6 +86,7 @@ class _Reader:
             inputs=inputs,
             outputs=outputs,
             parameters=parameters,
+            rounded=rounded_in(" ".join(_text(file) for file in sorted({*read, *headers}))),
             directory=self.path.parent,
             files=tuple(sorted({self.path, *read, *headers})),
             span=self.node.span,
@@ -250,3 +252,11 @@ class _Reader:
     def _system_headers(self, files: Iterable[Path]) -> tuple[str, ...]:
         codes = self._parse(files)
         return tuple(sorted({include.name for code in codes for include in code.includes if include.system}))
+
+
+def _text(path: Path) -> str:
+    """The text of a source file without its comments; empty if it cannot be read."""
+    try:
+        return SourceFile(path, path.read_text(encoding="utf-8", errors="replace")).without_comments
+    except OSError:
+        return ""

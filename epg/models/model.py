@@ -74,6 +74,8 @@ class Model:
     """The folders beside ``directory`` that were searched: a new or removed file in them can change the model."""
     twins: tuple[Path, ...] = ()
     """Files that are not used, because a file of the model has the same text.  If they change, the model can change."""
+    rounded: frozenset[str] = frozenset()
+    """The functions that the model calls and whose last bits depend on the C library: "sin", "exp"."""
 
     @property
     def instantiable(self) -> bool:

@@ -13,7 +13,7 @@ from epg.documents.text_file import one_line
 from epg.models import details
 from epg.models.assignments import assignments, exact_number, is_step, port_lines
 from epg.models.c_code import KEYWORDS
-from epg.models.features import STUBS, check_method, check_tokens
+from epg.models.features import STUBS, check_method, check_tokens, rounded_in
 from epg.models.identifiers import words
 from epg.models.model import Model
 from epg.models.ports import check_identifiers, make_parameters, make_ports
@@ -131,6 +131,7 @@ def load_tokens_model(tokens: Tokens, diagnostics: Diagnostics) -> Model | None:
         inputs=ports[0],
         outputs=ports[1],
         parameters=parameters,
+        rounded=rounded_in(" ".join(tokens.code(token).code for token in CODE)),
         directory=tokens.path.parent,
         files=(tokens.path,),
         span=whole,

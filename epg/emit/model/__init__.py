@@ -27,9 +27,20 @@ from collections.abc import Mapping
 from epg.emit.model.build import ModelBuild, model_build
 from epg.emit.model.copies import copies, shims
 from epg.emit.model.render import render
+from epg.models.details import TokensExport
+from epg.models.features import rounded_in
 from epg.models.model import Model
 
-__all__ = ["ModelBuild", "emit_model", "model_build"]
+__all__ = ["ModelBuild", "emit_model", "model_build", "rounded_functions"]
+
+
+def rounded_functions(model: Model) -> frozenset[str]:
+    """The functions that the code of a model calls and whose last bits depend on the C library: "sin", "exp"."""
+    if not isinstance(model.details, TokensExport):
+        return model.rounded
+    from epg.emit.model.tokens_code import helper_texts
+
+    return model.rounded | rounded_in(" ".join(helper_texts(model.details.functions)))
 
 
 def emit_model(

@@ -702,7 +702,7 @@ TEST(any_bytes_are_harmless)
             memcpy(message + 2, line, strlen(line));
         }
         if (message[0] == 'S' && rand() % 2 > 0) { /* a stream that exists, of floats or doubles */
-            message[2] |= 1;
+            message[2] = 1;
             length += length % 2;
             for (size_t k = 3; k < length; k++) {
                 message[k] = k < 6 || k % 2 > 0 ? 0 : (unsigned char)(rand() % 12);

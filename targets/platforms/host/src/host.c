@@ -10,6 +10,7 @@
 #include "files.h"
 #include "interface.h"
 #include "options.h"
+#include "replay.h"
 #include "report.h"
 #include "ros.h"
 #include "run.h"
@@ -104,6 +105,15 @@ static bool prepare_target(epg_target_t *target, const epg_host_options_t *optio
     return !options->ros.given || epg_host_ros_prepare(&options->ros, target);
 }
 
+/** Replays a recording, and writes the trace. */
+static int replay(const epg_host_target_t *host, const epg_host_options_t *options)
+{
+    epg_host_files_t files;
+    const bool opened = epg_host_files_open(&files, options);
+    const int status = opened ? epg_host_replay(host, options->replay, files.trace, options->quiet) : FAILED;
+    return epg_host_files_close(&files, options) ? status : FAILED;
+}
+
 int epg_host_main(const epg_host_target_t *generated, int argc, char **argv)
 {
     epg_host_options_t options;
@@ -117,6 +127,9 @@ int epg_host_main(const epg_host_target_t *generated, int argc, char **argv)
     if (options.interface) {
         epg_host_print_interface(generated);
         return DONE;
+    }
+    if (options.replay != NULL) {
+        return replay(generated, &options);
     }
     static epg_target_t target; /* a copy of the generated constant, which can have other names */
     target = *generated->target;

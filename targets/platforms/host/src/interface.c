@@ -5,6 +5,7 @@
  */
 #include "interface.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 
 void epg_host_print_interface(const epg_host_target_t *host)
@@ -25,4 +26,12 @@ void epg_host_print_interface(const epg_host_target_t *host)
     for (size_t i = 0; i < host->signal_count; i++) {
         printf("signal,%s\n", host->signals[i].name);
     }
+    const epg_parameters_t *parameters = target->application->parameters;
+    for (size_t i = 0; parameters != NULL && i < parameters->count; i++) {
+        printf("parameter,%s\n", parameters->table[i].name);
+    }
+    for (size_t i = 0; i < host->function_count; i++) {
+        printf("function,%s\n", host->functions[i]);
+    }
+    printf("model,%016" PRIx64 "\nperiod,%" PRIu64 "\n", target->model, target->application->period_ns);
 }

@@ -41,6 +41,7 @@ void epg_host_print_help(const char *name)
            "  --topics FILE        writes all published values in the same form\n"
            "  --trace FILE         writes all signals, one row per control cycle\n"
            "  --statistics FILE    writes the run's statistics as JSON\n"
+           "  --replay FILE        replays a recording of 'epg live --record': the model alone, no plant\n"
            "  --quiet              prints no summary\n"
            "  --interface          prints the names of topics, digital inputs and signals, for programs\n"
            "  --help               prints this text\n"
@@ -190,6 +191,20 @@ static bool take_pace(const char *text, bool connected, epg_host_options_t *opti
     return true;
 }
 
+/** True if the options can be combined with --replay; false after a message. */
+static bool is_replay_alone(const epg_host_options_t *options, const char *duration, const char *pace)
+{
+    if (options->realtime || options->console || options->console_pty != NULL || options->store != NULL ||
+        options->setpoints != NULL || options->topics != NULL || options->statistics != NULL ||
+        options->agent != NULL || options->device != NULL || options->ros.given || duration != NULL || pace != NULL) {
+        fputs("error: --replay with another option than --trace and --quiet\n"
+              "hint: the recording has the inputs, the parameters and the duration of the run\n",
+              stderr);
+        return false;
+    }
+    return true;
+}
+
 bool epg_host_read_options(int argc, char **argv, bool connected, epg_host_options_t *options)
 {
     *options = (epg_host_options_t){0};
@@ -205,6 +220,7 @@ bool epg_host_read_options(int argc, char **argv, bool connected, epg_host_optio
         {"--topics", NULL, &options->topics},
         {"--trace", NULL, &options->trace},
         {"--statistics", NULL, &options->statistics},
+        {"--replay", NULL, &options->replay},
         {"--console", &options->console, NULL},
         {"--console-pty", NULL, &options->console_pty},
         {"--console-udp", NULL, &options->console_udp},
@@ -232,6 +248,9 @@ bool epg_host_read_options(int argc, char **argv, bool connected, epg_host_optio
     }
     /* `ros2 run` and launch files start a node without options of this program. */
     options->realtime = options->realtime || (options->ros.given && connected && duration == NULL && pace == NULL);
+    if (options->replay != NULL && !options->help && !options->interface) {
+        return is_replay_alone(options, duration, pace);
+    }
     return options->help || options->interface ||
            (take_pace(pace, connected, options) && epg_host_complete_options(duration, connected, options));
 }

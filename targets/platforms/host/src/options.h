@@ -31,6 +31,7 @@ typedef struct epg_host_options {
     const char *setpoints;   /**< path of the setpoint file; NULL: none */
     const char *topics;      /**< path of the file for publications; NULL: not written */
     const char *trace;       /**< path of the file for signals; NULL: not written */
+    const char *replay;      /**< path of the recording to replay; NULL: a run */
     const char *statistics;  /**< path of the file for statistics; NULL: not written */
     epg_host_ros_t ros;      /**< the arguments after --ros-args */
 } epg_host_options_t;

@@ -43,6 +43,8 @@ typedef struct epg_host_target {
     const epg_host_signal_t *signals; /**< all signals that can be recorded */
     size_t plant_output_count;
     const epg_host_signal_t *plant_outputs; /**< the part of `signals` that the plant computes */
+    size_t function_count;
+    const char *const *functions; /**< functions of the model whose last bits depend on the C library: "sin" */
     size_t input_count;
     const epg_host_input_t *inputs; /**< the digital inputs */
     const char *agent;  /**< address of the agent of the target's middleware: HOST:PORT or a terminal; NULL: no agent */
