@@ -52,6 +52,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--duration", type=float, metavar="SECONDS", help="length; default: until Ctrl-C")
     parser.add_argument("--csv", type=Path, metavar="FILE", help="also writes the rows to a CSV file")
     parser.add_argument("--mcap", type=Path, metavar="FILE", help="also writes the rows for PlotJuggler and Foxglove")
+    parser.add_argument(
+        "--record", type=Path, metavar="FILE", help="also writes a recording for 'epg replay', with every control cycle"
+    )
     parser.add_argument("--force", action="store_true", help="overwrite these files")
 
 
@@ -65,9 +68,14 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 
     if options.port is None:
         return _list(options)
-    for file in (options.csv, options.mcap):
+    for file in (options.csv, options.mcap, options.record):
         if file is not None and file.exists() and not options.force:
             diagnostics.error("file-exists", Span(str(file)), "this file exists", hint="--force overwrites it")
+    if options.record is not None and (options.signals is not None or options.every != 1):
+        message = "a recording for a replay has all ports of the model in every control cycle"
+        option = "--signals" if options.signals is not None else "--every"
+        hint = f"remove {option}, or record with --csv or --mcap"
+        diagnostics.error("record-all", Span.of_argument(str(options.record), "--record"), message, hint=hint)
     diagnostics.stop_if_errors()
     relay = _Relay()
     try:
@@ -98,6 +106,8 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
                 if not options.json and names:
                     stream = recording.stream
                     print(f"{stream.rows} rows, {stream.dropped} dropped, {client.damaged} damaged frames")
+                if options.record is not None and recording.stream.dropped:
+                    sys.stderr.write(_DROPPED)
             finally:
                 client.stop()
     except PortError as problem:
@@ -119,6 +129,11 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
             hint = "look at the program and at the network, and connect again"
         return _failed(options, relay.lost, hint)
     return 0
+
+
+_DROPPED = """A replay is not possible over dropped rows.
+hint: a larger 'capture' in 'communication' of the .tcf keeps more rows in memory
+"""
 
 
 def _failed(options: argparse.Namespace, message: str, hint: str) -> int:
@@ -192,6 +207,10 @@ def _chosen(client: Client, options: argparse.Namespace) -> list[str]:
     from epg.live.client import Refused
 
     known = [signal.name for signal in client.description.streamed]
+    if options.record is not None:
+        from epg.live.recording import signals_to_record
+
+        return signals_to_record(client)
     if options.signals is None:
         return [signal.name for signal in client.description.signals[:32]]
     names = []
@@ -210,6 +229,7 @@ def _chosen(client: Client, options: argparse.Namespace) -> list[str]:
 def _sinks(options: argparse.Namespace, client: Client, names: list[str]) -> Iterator[list[Sink]]:
     """The files of the command line, open."""
     from epg import bootstrap
+    from epg.live.recording import ReplayFile
     from epg.live.rows import CsvFile, JsonLines, McapFile
 
     sinks: list[Sink] = []
@@ -219,6 +239,8 @@ def _sinks(options: argparse.Namespace, client: Client, names: list[str]) -> Ite
         if options.mcap is not None:
             bootstrap.ensure("mcap")
             sinks.append(McapFile(options.mcap, names, f"/{client.description.node or 'target'}", time.time_ns()))
+        if options.record is not None:
+            sinks.append(ReplayFile(options.record, client))
         if options.json:
             sinks.append(JsonLines(sys.stdout, names))
         yield sinks
@@ -231,7 +253,10 @@ def _start(recording: Recording, client: Client, names: list[str], options: argp
     if not names:
         return
     known = [signal.name for signal in client.description.streamed]
-    every = recording.start(client, [known.index(name) for name in names], options.every)
+    if options.record is not None and "enabled=1" in client.command("stats")[0].split(" "):
+        sys.stderr.write("the target is enabled already: a replay begins at its next enabling\n")
+    indices = [known.index(name) for name in names]
+    every = recording.start(client, indices, options.every, exact=options.record is not None)
     if every != options.every and not options.json:
         sys.stderr.write(f"a row in every {every}th control cycle: the port carries no more\n")
 

@@ -8,7 +8,7 @@ The exit status is:
 - 2: wrong command line
 - 3: a bug in EPG
 - 4: something is missing on the computer: a Python package, a program, a folder that can be written
-- 5: ``simulate``: a limit does not hold, or the run did not end in the expected state
+- 5: ``simulate``: a limit does not hold, or the run did not end in the expected state; ``replay``: an output differs
 """
 
 from __future__ import annotations
@@ -43,6 +43,7 @@ COMMANDS = {
     "flash": "write the images of a system to its boards",
     "launch": "write a ROS 2 launch file, or systemd units, for the agents of targets",
     "live": "show the values of a running target, record them, and send it commands",
+    "replay": "feed a recording of a target to its host program, and compare the outputs",
     "record": "record the topics of a target or of a system on ROS 2",
     "describe": "write layouts for PlotJuggler and Foxglove with the values of a target",
     "plot": "compare a recorded run with another one, or with its simulation",

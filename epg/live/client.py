@@ -22,6 +22,8 @@ PATIENCE = 1.0
 """Seconds to wait for an answer before a command is sent again or has failed."""
 KEEP = 0.5
 """Seconds between two signs of life to the target.  It ends streams after 2 s without one."""
+EXACT = 0xFFFF
+"""In the place of the first signal of a stream: the values are doubles."""
 AGAIN = ("get", "set", "ports", "version", "stats", "disable")
 """Commands that have the same effect if they are carried out twice."""
 
@@ -77,11 +79,13 @@ class Description:
     actuators: tuple[str, ...]
     encoders: tuple[str, ...]
     parameters: tuple[Parameter, ...]
+    model: str = ""  # identifies the model and the generated values of its parameters
+    replay: tuple[Signal, ...] = ()  # what a replay needs beside the signals; empty for a target of an earlier EPG
 
     @property
     def streamed(self) -> tuple[Signal, ...]:
         """All signals of a stream, in the order of their indices."""
-        return self.signals + self.loop
+        return self.signals + self.loop + self.replay
 
 
 @dataclass(frozen=True)
@@ -172,15 +176,18 @@ class Client:
         with contextlib.suppress(PortError):
             self._send(b"R" + number.to_bytes(4, "little"))
 
-    def start_stream(self, signals: Sequence[int], every: int, rows: Callable[[Rows], None]) -> None:
+    def start_stream(
+        self, signals: Sequence[int], every: int, rows: Callable[[Rows], None], *, exact: bool = False
+    ) -> None:
         """Starts to stream the signals with these indices, a row in every ``every``-th control cycle.
 
-        ``rows`` is called from the thread that reads.
+        ``rows`` is called from the thread that reads.  With ``exact``, the values have all bits.
 
         :raises Refused: the target refused it
         :raises Lost: there is no answer
         """
-        data = struct.pack(f"<I{len(signals)}H", every, *signals)
+        indices = [EXACT, *signals] if exact else signals
+        data = struct.pack(f"<I{len(indices)}H", every, *indices)
         with self._commanding:
             self._rows = rows
             self._ask(b"S", data, "stream")
@@ -235,6 +242,8 @@ class Client:
             actuators=names("actuator"),
             encoders=names("encoder"),
             parameters=parameters,
+            model=words.get("model", ""),
+            replay=signals("replay", "replay."),
         )
 
     # Messages
@@ -302,10 +311,10 @@ class Client:
                 answer.over.set()
         elif kind == b"N" and len(data) == 4:
             self._numbered(int.from_bytes(data, "little"))
-        elif kind == b"D" and len(data) >= 12 and self._rows is not None:
+        elif kind in b"DE" and len(data) >= 12 and self._rows is not None:
             number, tick_ns = struct.unpack_from("<IQ", data)
-            values = array("f")
-            values.frombytes(data[12 : len(data) - (len(data) - 12) % 4])
+            values = array("f" if kind == b"D" else "d")
+            values.frombytes(data[12 : len(data) - (len(data) - 12) % values.itemsize])
             self._rows(Rows(number, tick_ns / 1e9, values))
 
 

@@ -24,10 +24,11 @@ _MODULO = 1 << 32
 
 
 class Row(NamedTuple):
-    """A row: its time in seconds since the first row, and one value per signal."""
+    """A row: its time in seconds since the first row, one value per signal, and its number, which dropped rows have, too."""
 
     time: float
     values: Sequence[float]
+    number: int = 0
 
 
 class Stream:
@@ -53,7 +54,8 @@ class Stream:
         self.rows += count
         for index in range(count):
             time = rows.tick - self._begin + index * self.period
-            yield Row(time, rows.values[index * width : (index + 1) * width])
+            number = (rows.number + index) % _MODULO
+            yield Row(time, rows.values[index * width : (index + 1) * width], number)
 
 
 class Sink(Protocol):
@@ -132,8 +134,10 @@ class Recording:
         self.stream, self._sinks = stream, sinks
         self._arrived: deque[Rows] = deque()
 
-    def start(self, client: Client, signals: Sequence[int], every: int) -> int:
+    def start(self, client: Client, signals: Sequence[int], every: int, *, exact: bool = False) -> int:
         """Starts a stream, in every ``every``-th cycle or as often as the transport carries it; returns that number.
+
+        An ``exact`` stream has values with all bits, and has them in every ``every``-th cycle or not at all.
 
         :raises Refused: the target refused it for another reason
         :raises Lost: the target does not answer
@@ -141,10 +145,10 @@ class Recording:
         while True:
             self.stream.period = client.description.period * every
             try:
-                client.start_stream(signals, every, self._arrived.append)
+                client.start_stream(signals, every, self._arrived.append, exact=exact)
             except Refused as refusal:
                 words = str(refusal).split(" ")
-                if words[0] != "needs":  # "needs 17615 bytes per second of 8064 that the transport has for streams"
+                if words[0] != "needs" or exact:  # "needs 17615 bytes per second of 8064 that the transport has for streams"
                     raise
                 needed, room = int(words[1]), int(words[6])
                 every = max(every + 1, -(-every * needed // room))

@@ -50,7 +50,11 @@ def test_a_target_describes_itself(target: Target) -> None:
         ("loop.lateness", "ns"),
         ("loop.computation", "ns"),
     ]
-    assert found.streamed == found.signals + found.loop
+    assert [signal.name for signal in found.replay] == [
+        f"replay.{name}" for name in ("cycle", "parameter", "value", "acted", "untold")
+    ]
+    assert found.streamed == found.signals + found.loop + found.replay
+    assert len(found.model) == 16
     assert set(found.actuators) == {"pwm_pan", "pwm_tilt"}
     kp = next(parameter for parameter in found.parameters if parameter.name == "Pan\\PID\\kp")
     assert (kp.value, kp.generated, kp.unit) == (2.6, 2.6, "")

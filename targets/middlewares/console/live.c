@@ -15,7 +15,8 @@ enum {
     BYTE_MS = 100,     /* a frame in which no byte arrives for this time has ended */
     LEASE_MS = 300,    /* a lease ends this time after the sending of the newest number that was sent back */
     NUMBER_MS = 50,    /* time between two numbers */
-    FRAMES = 2,        /* frames of rows per poll */
+    FRAMES = 2,        /* frames of several rows per poll */
+    LONG_FRAMES = 8,   /* frames of one row per poll */
     ROWS_SIZE = 216,   /* largest number of bytes of values in a frame of several rows */
     ROWS_OVERHEAD = 1 + 4 + 8 + EPG_CONSOLE_FRAME_CRC + 4, /* bytes of a frame of rows without the values */
     RESERVE = 256,                                         /* bytes of output that rows leave free for answers */
@@ -210,7 +211,8 @@ static void poll_stream(epg_console_session_t *session)
     if (application->telemetry == NULL) {
         return;
     }
-    for (int i = 0; i < FRAMES && session->live.streaming && send_rows(session); i++) {
+    const int frames = session->live.most > 1U ? FRAMES : LONG_FRAMES;
+    for (int i = 0; i < frames && session->live.streaming && send_rows(session); i++) {
     }
     if (!session->live.streaming && epg_telemetry_idle(application->telemetry)) {
         epg_capture_take_back(application->capture);
