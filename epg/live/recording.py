@@ -188,19 +188,27 @@ def _take_rows(found: Recorded, names: Sequence[str], lines: Sequence[str], diag
         try:
             if len(fields) != len(names):
                 raise ValueError(f"this row has {len(fields)} columns, not {len(names)}")
-            found.times.append(float(fields[time_at]))
-            state = float(fields[state_at])
+            found.times.append(_number(fields[time_at]))
+            state = _number(fields[state_at])
             for column, index in zip(columns, ports):
-                column.append(float(fields[index]))
+                column.append(_number(fields[index]))
             if found.is_trace:  # the first control cycle initialises the model, too
                 starts_enabled = row == 0 and found.times[0] > 0.0
                 state = before + 1 + (1 if starts_enabled else 0) if state > 0.5 else 0
             before = int(state)
             found.cycles.append(before)
         except (ValueError, OverflowError) as problem:
-            diagnostics.error("replay-recording", found.span(row), str(problem), hint=_HINT)
+            hint = "the recording was changed after it was made: record the run again"
+            diagnostics.error("replay-recording", found.span(row), str(problem), hint=hint)
             return False
         if not found.is_trace and fields[-1].strip():
             found.changes[row] = fields[-1].strip()
     found.columns = {names[index]: column for index, column in zip(ports, columns)}
     return True
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"'{text[:40]}' is not a number") from None

@@ -134,7 +134,7 @@ def _check_program(found: Recorded, executable: Path, interface: Interface, diag
     for signal in interface.names["signal"]:
         if signal.startswith(("inputs.", "outputs.")) and signal not in found.columns and not found.model:
             message = f"the recording has no '{signal}'"
-            hint = did_you_mean(signal, found.columns) or "a trace for a replay has all inputs and outputs of the model"
+            hint = "a trace for a replay has all inputs and outputs of the model, and is of the same model"
             diagnostics.error("replay-recording", Span(str(found.path), found.first - 1), message, hint=hint)
     counts = [
         (kind, sum(name.startswith(kind) for name in interface.names["signal"]), [*found.columns])

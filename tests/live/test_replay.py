@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import json
 import math
+import re
+import shlex
 import struct
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from .replays import Text, cells, epg, record, record_at_terminal
+from .replays import ROOT, Text, cells, epg, record, record_at_terminal
 from .target import Target
 
 KP = "Pan\\PID\\kp"
@@ -163,6 +165,25 @@ def test_the_trace_of_a_host_program_is_replayed(programs: Path, tmp_path: Path)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "1700 control cycles, 2 enablings, 0 changes of parameters\n" in done.stdout
     assert done.stdout.endswith("equal to the bit\n")
+
+
+def test_the_example_of_the_page(programs: Path, tmp_path: Path) -> None:
+    page = (ROOT / "docs/live.md").read_text()
+    section = page.partition("\n## Replay\n")[2].partition("\n## ")[0]
+    commands, output = re.findall(r"^```(?:sh)?\n(.*?)^```$", section, re.MULTILINE | re.DOTALL)[:2]
+    start, *lines = commands.splitlines()
+    assert start.split()[:2] == ["build/jiwy/jiwy_host", "--realtime"]
+    with running(programs / "jiwy_host", tmp_path) as target:
+        for line in lines:
+            words = [
+                str({"/tmp/jiwy": target.port, "build/jiwy/jiwy_host": programs / "jiwy_host"}.get(word, word))
+                for word in shlex.split(line)
+            ]
+            assert words[0] == "epg"
+            done = epg(*words[1:], cwd=tmp_path)
+            assert done.returncode == 0, done.stdout + done.stderr
+    expected = ".*".join(re.escape(part) for part in output.split("..."))
+    assert re.fullmatch(expected, re.sub(r"(?<=\d) +0 ", "     0 ", done.stdout)), done.stdout
 
 
 # Functions of the C library
