@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg replay``: feeds a recording of a target to its host program, and compares the outputs of every control cycle."""
+"""``epg replay``: feeds a recording of a target to its host program, and compares the outputs of every cycle."""
 
 from __future__ import annotations
 
@@ -45,7 +45,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="largest difference as a part of an output's largest value; default: 0 for a model with + - * / only, "
         "else 1e-9",
     )
-    parser.add_argument("--trace", type=Path, metavar="FILE", help="also writes the signals of the replay to a CSV file")
+    parser.add_argument(
+        "--trace", type=Path, metavar="FILE", help="also writes the signals of the replay to a CSV file"
+    )
     parser.add_argument("--force", action="store_true", help="overwrite this file")
 
 
@@ -56,9 +58,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.live.replay import replay
 
     if options.trace is not None and options.trace.exists() and not options.force:
-        diagnostics.error(
-            "file-exists", Span(str(options.trace)), "this file exists", hint="--force overwrites it"
-        )
+        diagnostics.error("file-exists", Span(str(options.trace)), "this file exists", hint="--force overwrites it")
     found = diagnostics.checked(read_recording(options.recording, diagnostics))
     progress = Progress(quiet=options.json)
     try:

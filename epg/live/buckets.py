@@ -39,7 +39,7 @@ class Buckets:
         self._finished: list[Bucket] = []
 
     def write(self, rows: Iterable[Row]) -> None:
-        for time, values in rows:
+        for time, values, _ in rows:
             number = int(time / self._width)
             if number != self._number:
                 self._finish()

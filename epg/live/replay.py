@@ -21,8 +21,8 @@ from epg.source import Span
 TOLERANCE = 1e-9
 """The tolerance of a model whose functions depend on the C library, as a part of an output's largest value.
 
-The last bit of a result of ``sin`` or ``exp`` can differ between two C libraries, which is 2e-16 of its size.  A million
-steps that add such differences to a state stay below 1e-9; a fault of a controller is far above.
+The last bit of a result of ``sin`` or ``exp`` can differ between two C libraries, which is 2e-16 of its size.  A
+million steps that add such differences to a state stay below 1e-9; a fault of a controller is far above.
 """
 
 
@@ -46,8 +46,8 @@ class OutputResult:
 class Replayed:
     """The result of a replay.  ``functions`` are those of the model whose last bits depend on the C library.
 
-    ``enablings`` is the number of times that the target was enabled.  ``stopped`` is the first cycle in which the replay
-    had a fault that the recording does not have.
+    ``enablings`` is the number of times that the target was enabled.  ``stopped`` is the first cycle in which the
+    replay had a fault that the recording does not have.
     """
 
     outputs: tuple[OutputResult, ...]
@@ -194,8 +194,8 @@ def replay(
 ) -> Replayed:
     """Replays ``found`` with the host program ``executable``.
 
-    ``changed`` are parameters that have other values during the whole replay.  ``tolerance`` replaces that of the model.
-    The replay's own trace becomes the file ``trace``.
+    ``changed`` are parameters that have other values during the whole replay.  ``tolerance`` replaces that of the
+    model.  The replay's own trace becomes the file ``trace``.
 
     Raises UserError if the recording cannot be replayed by this program.
     """
@@ -232,7 +232,7 @@ def replay(
 
 
 def _read(path: Path, outputs: Sequence[str]) -> tuple[list[array[float]], array[float]]:
-    """The columns of the model's outputs in the replay's trace, in the order of ``outputs``, and the column ``enabled``.
+    """The columns of the model's outputs in the replay's trace, in the order of ``outputs``, and ``enabled``.
 
     The console replaces blanks in names, so that those of a recording can differ from those of the trace.
     """

@@ -24,7 +24,7 @@ _MODULO = 1 << 32
 
 
 class Row(NamedTuple):
-    """A row: its time in seconds since the first row, one value per signal, and its number, which dropped rows have, too."""
+    """A row: its time in seconds since the first row, one value per signal, and its number.  Dropped rows count."""
 
     time: float
     values: Sequence[float]
@@ -148,7 +148,9 @@ class Recording:
                 client.start_stream(signals, every, self._arrived.append, exact=exact)
             except Refused as refusal:
                 words = str(refusal).split(" ")
-                if words[0] != "needs" or exact:  # "needs 17615 bytes per second of 8064 that the transport has for streams"
+                if (
+                    words[0] != "needs" or exact
+                ):  # "needs 17615 bytes per second of 8064 that the transport has for streams"
                     raise
                 needed, room = int(words[1]), int(words[6])
                 every = max(every + 1, -(-every * needed // room))

@@ -130,7 +130,7 @@ static bool has_place(const double *place)
 static bool read_header(void)
 {
     if (!next_line() || strncmp(replay.text, "# epg recording 1 ", 18) != 0 || !next_line()) {
-        return fail("this file is not a recording of 'epg live --record'");
+        return !replay.failed && fail("this file is not a recording of 'epg live --record'");
     }
     replay.columns = 1;
     for (const char *comma = strchr(replay.text, ','); comma != NULL; comma = strchr(comma + 1, ',')) {
