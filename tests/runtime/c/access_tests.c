@@ -278,6 +278,7 @@ static bool parameter_wanted[COUNT];
 static double parameter_applied[COUNT];
 static bool parameter_changed[COUNT];
 static uint8_t parameter_news[COUNT];
+static uint32_t parameter_acted[COUNT];
 static epg_parameters_t parameters;
 
 static epg_parameter_request_t request_buffers[4][COUNT];
@@ -349,6 +350,41 @@ static bool communication_changes(size_t index, double new_value)
 {
     const epg_parameter_change_t change = {index, new_value};
     return epg_parameters_change(&parameters, &change, 1);
+}
+
+/** A stream tells changes of the program and of the communication side alike, with the cycle in which each acted. */
+TEST(a_stream_tells_changes_of_the_program)
+{
+    static epg_telemetry_t telemetry;
+    static double memory[64];
+    telemetry = (epg_telemetry_t){0};
+    begin_with_parameters(true);
+    parameters.log.acted = parameter_acted;
+    fake.application.telemetry = &telemetry;
+    fake_cycles(4);
+    epg_telemetry_request_t request = {.columns = 1, .signals = {&fake.control.replay[EPG_REPLAY_CYCLE]}, .every = 1};
+    CHECK(epg_telemetry_start(&telemetry, &request, memory, 64));
+    fake_cycle();
+    CHECK_EQUAL(fake.control.replay[EPG_REPLAY_CYCLE], 5.0);
+    CHECK_EQUAL(fake.control.replay[EPG_REPLAY_PARAMETER], 0.0);
+    CHECK(set_parameter(0, 4.0));
+    CHECK(communication_changes(2, 8.0));
+    fake_cycle();
+    fake_cycle();
+    CHECK_EQUAL(fake.control.replay[EPG_REPLAY_UNTOLD], 0.0);
+    CHECK(fake.control.replay[EPG_REPLAY_PARAMETER] == 1.0 || fake.control.replay[EPG_REPLAY_PARAMETER] == 3.0);
+    CHECK_EQUAL(fake.control.replay[EPG_REPLAY_VALUE], fake.control.replay[EPG_REPLAY_PARAMETER] == 1.0 ? 4.0 : 8.0);
+    CHECK_EQUAL(fake.control.replay[EPG_REPLAY_ACTED], 6.0);
+    fake_cycle();
+    CHECK_EQUAL(fake.control.replay[EPG_REPLAY_PARAMETER], 0.0);
+    epg_control_request(&fake.control, false);
+    fake_cycles(2);
+    CHECK_EQUAL(fake.control.replay[EPG_REPLAY_CYCLE], 0.0);
+    epg_control_request(&fake.control, true);
+    fake_cycle();
+    CHECK_EQUAL(fake.control.replay[EPG_REPLAY_CYCLE], 1.0);
+    CHECK_EQUAL(fake.control.replay[EPG_REPLAY_ACTED], 1.0);
+    CHECK_EQUAL(fake.control.replay[EPG_REPLAY_UNTOLD], 1.0);
 }
 
 TEST(a_parameter_changes_in_the_next_cycle_and_after_every_initialisation)
@@ -481,6 +517,7 @@ RUN(ENTRY(nothing_is_set_before_the_first_start), ENTRY(a_value_acts_in_the_next
     ENTRY(components_learn_of_a_value_on_the_communication_side), ENTRY(a_start_forgets_values_that_were_set_before_it),
     ENTRY(values_are_those_of_the_newest_step), ENTRY(values_stay_while_the_model_rests),
     ENTRY(values_of_a_run_are_gone_after_a_start), ENTRY(a_cycle_does_not_collect_values_that_nobody_gets),
+    ENTRY(a_stream_tells_changes_of_the_program),
     ENTRY(a_parameter_changes_in_the_next_cycle_and_after_every_initialisation),
     ENTRY(a_value_outside_of_the_limits_is_refused),
     ENTRY(a_change_before_the_first_cycle_is_made_after_the_initialisation),
