@@ -194,9 +194,10 @@ static bool take_pace(const char *text, bool connected, epg_host_options_t *opti
 /** True if the options can be combined with --replay; false after a message. */
 static bool is_replay_alone(const epg_host_options_t *options, const char *duration, const char *pace)
 {
-    if (options->realtime || options->console || options->console_pty != NULL || options->store != NULL ||
-        options->setpoints != NULL || options->topics != NULL || options->statistics != NULL ||
-        options->agent != NULL || options->device != NULL || options->ros.given || duration != NULL || pace != NULL) {
+    if (options->realtime || options->console || options->console_pty != NULL || options->console_udp != NULL ||
+        options->store != NULL || options->setpoints != NULL || options->topics != NULL ||
+        options->statistics != NULL || options->agent != NULL || options->device != NULL || options->ros.given ||
+        duration != NULL || pace != NULL) {
         fputs("error: --replay with another option than --trace and --quiet\n"
               "hint: the recording has the inputs, the parameters and the duration of the run\n",
               stderr);

@@ -254,7 +254,8 @@ static bool keep_frame(epg_host_udp_session_t *session)
         session->once_ns = session->once_length == 0 ? 0 : session->once_ns;
         memcpy(session->once + session->once_length, session->frame, length);
         session->once_length += length;
-        session->once_urgent = session->once_urgent || session->frame[TYPE_AT] != 'D';
+        const bool rows = session->frame[TYPE_AT] == 'D' || session->frame[TYPE_AT] == 'E';
+        session->once_urgent = session->once_urgent || !rows;
     }
     session->frame_whole = false;
     session->frame_length = 0;
