@@ -210,7 +210,7 @@ def _chosen(client: Client, options: argparse.Namespace) -> list[str]:
     if options.record is not None:
         from epg.live.recording import signals_to_record
 
-        return signals_to_record(client)
+        return signals_to_record(client.description)
     if options.signals is None:
         return [signal.name for signal in client.description.signals[:32]]
     names = []

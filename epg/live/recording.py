@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics
-from epg.live.client import Client, Refused
+from epg.live.client import Client, Description, Refused
 from epg.live.rows import Row
 from epg.source import Span
 
@@ -26,12 +26,11 @@ MOST = 32
 """Signals of one stream."""
 
 
-def signals_to_record(client: Client) -> list[str]:
+def signals_to_record(found: Description) -> list[str]:
     """The signals of a recording for a replay: all ports of the model, and what a replay needs beside them.
 
     :raises Refused: the target cannot be recorded
     """
-    found = client.description
     if not found.replay:
         raise Refused("its firmware was made by an EPG without replays: build it again")
     if len(found.signals) + len(found.replay) > MOST:

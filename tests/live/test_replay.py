@@ -14,6 +14,9 @@ from pathlib import Path
 
 import pytest
 
+from epg.live.client import Description, Refused, Signal
+from epg.live.recording import signals_to_record
+
 from .replays import ROOT, Text, cells, epg, record, record_at_terminal
 from .target import Target
 
@@ -292,3 +295,18 @@ def test_a_program_refuses_wrong_recordings_by_itself(text: Text, programs: Path
     assert said(text.write(path)) == "run.csv:2: error: the column 'inputs.position_pan' is missing\n"
     path.write_bytes(b"# epg recording 1 {}\n" + b"x" * 100_000)
     assert said(path) == "run.csv:2: error: this line is too long\n"
+
+
+@pytest.mark.parametrize(
+    ("ports", "extra", "text"),
+    [
+        (28, 5, "its model has 28 ports, and a recording for a replay has at most 27"),
+        (4, 0, "its firmware was made by an EPG without replays: build it again"),
+    ],
+)
+def test_a_target_that_cannot_be_recorded(ports: int, extra: int, text: str) -> None:
+    signals = tuple(Signal(f"inputs.{number}", "") for number in range(ports))
+    replay = tuple(Signal(f"replay.{number}", "") for number in range(extra))
+    found = Description("a", "a", "1", "2", 0.001, (), (), signals, (), (), (), (), "3", replay)
+    with pytest.raises(Refused, match=re.escape(text)):
+        signals_to_record(found)
