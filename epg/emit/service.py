@@ -54,11 +54,16 @@ class ParameterView:
 
 @dataclass(frozen=True)
 class ActuatorView:
-    """An actuator port that the user can drive by hand.  ``statement`` is C that drives it with ``duty``."""
+    """An actuator port that the user can drive by hand.
+
+    ``statement`` is C that drives it with ``duty``; ``applied`` is a C expression for its present duty;
+    it is empty if the kind does not tell it.
+    """
 
     name: str
     function: Code
     statement: Code
+    applied: Code
 
 
 @dataclass(frozen=True)
@@ -248,7 +253,8 @@ def _actuators(component: ResolvedComponent, macro: Macro, symbol: Code) -> Iter
     for port in ports:
         name = component.name if len(ports) == 1 else f"{component.name}.{port.name}"
         function = Code(f"{symbol}_jog_{identifier(port.name)}")
-        yield ActuatorView(name, function, macro(component, "write", port.name, Code("duty")))
+        applied = macro(component, "applied", port.name).strip()
+        yield ActuatorView(name, function, macro(component, "write", port.name, Code("duty")), applied)
 
 
 def _encoders(component: ResolvedComponent, macro: Macro, symbol: Code) -> Iterable[EncoderView]:

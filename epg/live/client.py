@@ -76,6 +76,8 @@ class Description:
     publications: tuple[str, ...]
     signals: tuple[Signal, ...]  # the ports of the model
     loop: tuple[Signal, ...]  # durations of the control loop; empty for a target of an earlier EPG
+    duties: tuple[Signal, ...]  # the present duties of the actuators
+    positions: tuple[Signal, ...]  # of the encoders
     actuators: tuple[str, ...]
     encoders: tuple[str, ...]
     parameters: tuple[Parameter, ...]
@@ -85,7 +87,7 @@ class Description:
     @property
     def streamed(self) -> tuple[Signal, ...]:
         """All signals of a stream, in the order of their indices."""
-        return self.signals + self.loop + self.replay
+        return self.signals + self.loop + self.replay + self.duties + self.positions
 
 
 @dataclass(frozen=True)
@@ -239,6 +241,8 @@ class Client:
             publications=names("publication"),
             signals=signals("signal", ""),
             loop=signals("loop", "loop."),
+            duties=signals("actuator", "actuators."),
+            positions=signals("encoder", "encoders."),
             actuators=names("actuator"),
             encoders=names("encoder"),
             parameters=parameters,

@@ -53,7 +53,10 @@ def test_a_target_describes_itself(target: Target) -> None:
     assert [signal.name for signal in found.replay] == [
         f"replay.{name}" for name in ("cycle", "parameter", "value", "acted", "untold")
     ]
-    assert found.streamed == found.signals + found.loop + found.replay
+    assert [(s.name, s.unit) for s in found.duties] == [("actuators.pwm_pan", ""), ("actuators.pwm_tilt", "")]
+    positions = [("encoders.encoder_pan", "rad"), ("encoders.encoder_tilt", "rad")]
+    assert [(s.name, s.unit) for s in found.positions] == positions
+    assert found.streamed == found.signals + found.loop + found.replay + found.duties + found.positions
     assert len(found.model) == 16
     assert set(found.actuators) == {"pwm_pan", "pwm_tilt"}
     kp = next(parameter for parameter in found.parameters if parameter.name == "Pan\\PID\\kp")

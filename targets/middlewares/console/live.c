@@ -44,7 +44,10 @@ static void end_stream(epg_console_session_t *session)
     }
 }
 
-/** Returns the value with this index in the answer of `ports`: a signal, or one of loop or replay; NULL: there is none. */
+/**
+ * Returns the value with this index in the answer of `ports`: a signal, a value of loop or replay, the duty of an
+ * actuator or the position of an encoder; NULL: there is none.
+ */
 static const double *value_at(const epg_target_t *target, size_t index)
 {
     if (index < target->signal_count) {
@@ -55,7 +58,15 @@ static const double *value_at(const epg_target_t *target, size_t index)
         return &target->control->loop[index];
     }
     index -= EPG_LOOP_VALUES;
-    return index < EPG_REPLAY_VALUES ? &target->control->replay[index] : NULL;
+    if (index < EPG_REPLAY_VALUES) {
+        return &target->control->replay[index];
+    }
+    index -= EPG_REPLAY_VALUES;
+    const epg_jog_t *jog = target->application->jog;
+    if (jog == NULL || index >= jog->actuator_count + jog->encoder_count) {
+        return NULL;
+    }
+    return index >= jog->actuator_count || jog->actuators[index].applied != NULL ? &jog->values[index] : NULL;
 }
 
 /** A stream that a program asks for. */

@@ -79,6 +79,11 @@ static void drive(double duty)
     bench.count += (int64_t)(duty * 100.0);
 }
 
+static double driven(void)
+{
+    return fake.actuator;
+}
+
 static int64_t count(void)
 {
     return bench.count;
@@ -89,10 +94,11 @@ static double position(void)
     return (double)bench.count * -0.25;
 }
 
-static const epg_jog_actuator_t actuators[1] = {{"motor", drive}};
+static const epg_jog_actuator_t actuators[1] = {{"motor", drive, driven}};
 static const epg_jog_encoder_t encoders[1] = {{"encoder", count, position, "rad"}};
 static epg_jog_reading_t first[1];
 static epg_jog_reading_t last[1];
+static double observed[2];
 
 static const epg_signal_t signals[4] = {
     {"inputs.position", "rad", &fake.input, 1},
@@ -173,7 +179,8 @@ void bench_start(bool enabled)
                 .encoder_count = 1,
                 .encoders = encoders,
                 .first = first,
-                .last = last},
+                .last = last,
+                .values = observed},
         .connected = true,
         .room = SIZE_MAX,
     };

@@ -303,6 +303,30 @@ TEST(a_stream_can_have_the_times_of_the_loop)
     CHECK_EQUAL(computation, 5000.0F);
 }
 
+TEST(a_stream_can_have_the_duty_and_the_position_of_a_movement_by_hand)
+{
+    begin(false);
+    stream(3, 1, 2, (const unsigned char[]){11, 12});
+    bench_run(10);
+    command(4, "jog motor 0.1 20");
+    bench_run(60);
+    unsigned int moving = 0;
+    float duty = 0.0F;
+    float position = 0.0F;
+    for (message_t rows = next('D'); rows.length > 0; rows = next('D')) {
+        for (size_t at = 13; at < rows.length; at += 8) {
+            duty = value_in(&rows.bytes[at]);
+            CHECK(duty == 0.0F || duty == 0.1F);
+            moving += duty > 0.0F ? 1U : 0U;
+            position -= duty > 0.0F ? 10.0F * 0.25F : 0.0F;
+            CHECK_EQUAL(value_in(&rows.bytes[at + 4]), position);
+        }
+    }
+    CHECK_EQUAL(moving, 20);
+    CHECK_EQUAL(duty, 0.0F);
+    CHECK_EQUAL(position, -50.0F);
+}
+
 TEST(rows_without_room_are_dropped_whole_and_leave_a_gap)
 {
     begin(true);
@@ -335,7 +359,7 @@ TEST(a_stream_that_is_impossible_is_refused)
     stream(3, 0, 1, (const unsigned char[]){0});
     stream(4, 1, 0, NULL);
     stream(5, 1, 33, (const unsigned char[33]){0});
-    stream(6, 1, 1, (const unsigned char[]){11});
+    stream(6, 1, 1, (const unsigned char[]){13});
     bench.options.transport_rate = 11520;
     stream(7, 1, 4, (const unsigned char[]){0, 1, 2, 3});
     bench_run(10);
@@ -738,6 +762,7 @@ RUN(ENTRY(a_command_in_a_frame_has_its_answer_in_frames_with_its_tag), ENTRY(a_l
     ENTRY(damaged_frames_do_nothing), ENTRY(lines_of_text_work_between_frames),
     ENTRY(a_movement_lasts_while_it_is_renewed), ENTRY(a_movement_ends_with_the_program),
     ENTRY(a_stream_has_a_row_of_every_cycle), ENTRY(a_stream_can_have_the_times_of_the_loop),
+    ENTRY(a_stream_can_have_the_duty_and_the_position_of_a_movement_by_hand),
     ENTRY(rows_without_room_are_dropped_whole_and_leave_a_gap), ENTRY(a_stream_that_is_impossible_is_refused),
     ENTRY(a_stream_of_doubles_has_every_bit_and_the_cycle_since_enabling),
     ENTRY(a_stream_tells_each_change_of_a_parameter_with_its_cycle),

@@ -32,7 +32,7 @@ static double read_position(void)
     return (double)count * 0.5;
 }
 
-static const epg_jog_actuator_t actuators[1] = {{"motor", drive}};
+static const epg_jog_actuator_t actuators[1] = {{"motor", drive, NULL}};
 static const epg_jog_encoder_t encoders[1] = {{"encoder", read_count, read_position, "rad"}};
 static epg_jog_reading_t first[1];
 static epg_jog_reading_t last[1];

@@ -21,6 +21,7 @@
 typedef struct epg_jog_actuator {
     const char *name;           /**< name of the component */
     void (*drive)(double duty); /**< drives with `duty`, -1 ... 1; runs in every cycle of a movement */
+    double (*applied)(void);    /**< the present duty, -1 ... 1; NULL: unknown */
 } epg_jog_actuator_t;
 
 /** An encoder whose movement is reported.  The functions run on the control side. */
@@ -52,6 +53,7 @@ typedef struct epg_jog {
     const epg_jog_encoder_t *encoders;
     epg_jog_reading_t *first; /**< `encoder_count` readings at the start of the movement */
     epg_jog_reading_t *last;  /**< `encoder_count` readings at its end */
+    double *values;           /**< memory of epg_jog_observe(): a value for each actuator, then for each encoder */
 
     epg_handover_t handover; /**< of the readings and of the members below, except `stop` */
     size_t actuator;
@@ -77,6 +79,12 @@ void epg_jog_clear(epg_jog_t *jog);
  * neither step the model nor write another output.
  */
 bool epg_jog_cycle(epg_jog_t *jog, bool enabled);
+
+/**
+ * Copies the present duties of the actuators and the positions of the encoders to `values`, for a stream.  They are
+ * those of any cycle, with or without a movement by hand.  Called only while a stream runs.
+ */
+void epg_jog_observe(const epg_jog_t *jog);
 
 /* Communication side ----------------------------------------------------------------------------------------- */
 

@@ -387,6 +387,9 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
     if (application->telemetry != NULL && epg_handover_there(&application->telemetry->handover)) {
         set_loop_values(control, tick_ns);
         set_replay_values(control);
+        if (application->jog != NULL) {
+            epg_jog_observe(application->jog);
+        }
         epg_telemetry_put(application->telemetry, tick_ns);
     }
 

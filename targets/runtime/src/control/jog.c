@@ -59,6 +59,18 @@ bool epg_jog_cycle(epg_jog_t *jog, bool enabled)
     return true;
 }
 
+void epg_jog_observe(const epg_jog_t *jog)
+{
+    for (size_t i = 0; i < jog->actuator_count; i++) {
+        if (jog->actuators[i].applied != NULL) {
+            jog->values[i] = jog->actuators[i].applied();
+        }
+    }
+    for (size_t i = 0; i < jog->encoder_count; i++) {
+        jog->values[jog->actuator_count + i] = jog->encoders[i].position();
+    }
+}
+
 /* Communication side ------------------------------------------------------------------------------------------- */
 
 bool epg_jog_idle(epg_jog_t *jog)

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The part of a recording from which a motor can be identified: one movement, free of end stops and encoder resets.
+
+A recording has positions at sampling times.  The duty of a row acts until the next row.  The longest part is used that
+has none of these:
+
+- a jump of the position, where a controller has reset the encoder;
+- a time at an end stop: the motor is driven as strongly as while it moved, and its position does not change;
+- missing rows during which the duty has changed.
+
+The rest before and after the movement is left out, except for a tenth of its length: it would not change the values,
+but make their errors look smaller.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from epg.dataclass import dataclass
+
+FEWEST_ROWS = 30
+_PAD = 0.1  # rest that is kept on both sides, as a share of the movement
+_STILL = 10  # samples without a count that are a rest
+_GAP = 2.5  # sampling periods
+
+
+@dataclass(frozen=True)
+class Samples:
+    """``position`` at ``time`` (s), as arrays of numpy.  ``duties[i]`` acts from ``changes[i]`` on.
+
+    ``period`` is the time between two samples.  ``resolution`` is the smallest change of the position, ``moved`` the
+    distance between the extreme positions.  ``at_rest`` is true if the motor rests at the begin; otherwise ``speed`` is
+    a guess of its first speed.  ``stop`` is the time at which an end stop ends the part, ``jump`` that of a reset.
+    """
+
+    time: Any
+    position: Any
+    duty: Any
+    changes: list[float]
+    duties: list[float]
+    period: float
+    resolution: float
+    moved: float
+    at_rest: bool
+    speed: float
+    stop: float | None
+    jump: float | None
+
+    @property
+    def counts(self) -> float:
+        """The distance in steps of the resolution."""
+        return self.moved / self.resolution if self.resolution > 0.0 else 0.0
+
+
+def samples_of(time: Any, position: Any, duty: Any) -> Samples:
+    """The longest usable part of a recording with at least two rows."""
+    import numpy as np
+
+    period = float(np.median(np.diff(time)))
+    steps = np.abs(np.diff(position))
+    # Positions in a recording are rounded to the precision of float.
+    noise = 1e-6 * float(np.abs(position).max() + np.ptp(position))
+    real = steps[steps > noise]
+    resolution = float(real.min()) if len(real) else 0.0
+    stops = _stops(position, duty, resolution)
+    jumps = _jumps(steps, resolution)
+    gaps = np.nonzero((np.diff(time) > _GAP * period) & (np.diff(duty) != 0.0))[0] + 1
+    edges = sorted({0, len(time), *jumps, *gaps.tolist(), *(edge for stop in stops for edge in stop)})
+    inside = {begin for begin, _ in stops}
+    parts = [(a, b) for a, b in zip(edges, edges[1:]) if not any(begin <= a < end for begin, end in stops)]
+    begin, end = max(parts, key=lambda part: _worth(position[part[0] : part[1]]), default=(0, len(time)))
+    stopped = float(time[end - 1]) if end in inside else None
+    jumped = float(time[end if end in jumps else begin]) if end in jumps or begin in jumps else None
+    begin, end = _without_rest(position, duty, begin, end, resolution)
+    time, position, duty = time[begin:end], position[begin:end], duty[begin:end]
+    changed = np.concatenate(([0], np.nonzero(np.diff(duty))[0] + 1)) if len(duty) else np.array([], dtype=int)
+    moves = np.abs(position - position[0]) > 0.5 * resolution if len(position) else np.array([], dtype=bool)
+    first = int(moves.argmax()) if moves.any() else len(moves)
+    driven = int((duty != 0.0).argmax()) if len(duty) and (duty != 0.0).any() else 0
+    head = min(len(time), max(_STILL, 2 + first))
+    return Samples(
+        time=time,
+        position=position,
+        duty=duty,
+        changes=[float(time[at]) for at in changed],
+        duties=[float(duty[at]) for at in changed],
+        period=period,
+        resolution=resolution,
+        moved=float(np.ptp(position)) if len(position) else 0.0,
+        at_rest=driven >= _STILL and first >= driven,
+        speed=float(position[head - 1] - position[0]) / max(float(time[head - 1] - time[0]), period) if head > 1 else 0,
+        stop=stopped,
+        jump=jumped,
+    )
+
+
+def _worth(position: Any) -> float:
+    """The path of a part: the sum of all movements."""
+    import numpy as np
+
+    return float(np.abs(np.diff(position)).sum())
+
+
+def _jumps(steps: Any, resolution: float) -> set[int]:
+    """The rows before which the position jumps, farther than a motor moves in a period."""
+    import numpy as np
+
+    moving = steps[steps > 0.5 * resolution]
+    if len(moving) < _STILL:
+        return set()
+    usual = float(np.quantile(moving, 0.9))
+    return set((np.nonzero(steps > max(10.0 * usual, 10.5 * resolution))[0] + 1).tolist())
+
+
+def _stops(position: Any, duty: Any, resolution: float) -> list[tuple[int, int]]:
+    """The rows from and to which the motor is at an end stop, although it is driven."""
+    import numpy as np
+
+    result = []
+    signs = np.sign(duty)
+    edges = [0, *(np.nonzero(np.diff(signs))[0] + 1).tolist(), len(duty)]
+    for begin, end in zip(edges, edges[1:]):
+        if signs[begin] == 0.0 or end - begin < 2 * _STILL:
+            continue
+        last = end - 1
+        near = np.abs(position[begin:end] - position[last]) <= 2.1 * resolution
+        away = np.nonzero(~near)[0]
+        arrival = begin + (int(away[-1]) + 1 if len(away) else 0)
+        if arrival == begin:  # it has not moved at all: not a stop that it has reached
+            continue
+        still = np.nonzero(np.abs(np.diff(position[begin:end])) > 0.5 * resolution)[0]
+        moving = [int(at) for at in still if begin + int(at) < arrival]
+        pace = float(np.median(np.diff(moving))) if len(moving) > 1 else float(arrival - begin)
+        strength = float(np.median(np.abs(duty[begin:arrival])))
+        pressed = np.abs(duty[arrival:end]) >= 0.5 * strength
+        if float(pressed.sum()) >= max(2.0 * _STILL, 8.0 * pace) and pressed.mean() > 0.5:
+            result.append((arrival, end))
+    return result
+
+
+def _without_rest(position: Any, duty: Any, begin: int, end: int, resolution: float) -> tuple[int, int]:
+    """The part without most of the rest on both sides.  A motor that is driven is not at rest."""
+    import numpy as np
+
+    moved = np.abs(np.diff(position[begin:end])) > 0.5 * resolution
+    active = np.nonzero(moved | (duty[begin : end - 1] != 0.0) | (np.diff(duty[begin:end]) != 0.0))[0]
+    if not len(active):
+        return begin, end
+    first, last = begin + int(active[0]), begin + int(active[-1]) + 1
+    pad = max(2 * _STILL, int(_PAD * (last - first)))
+    return max(begin, first - pad), min(end, last + pad + 1)
