@@ -12,6 +12,7 @@ from fractions import Fraction
 from pathlib import Path
 from types import MappingProxyType
 
+from epg.check.motors import Motor, motors_of
 from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.documents.items import text_of
@@ -65,7 +66,10 @@ class ParameterSetting:
 
 @dataclass(frozen=True)
 class Bindings:
-    """A bindings file.  ``inputs`` and ``outputs`` map model ports to the position of the name, and the bindings."""
+    """A bindings file.  ``inputs`` and ``outputs`` map model ports to the position of the name, and the bindings.
+
+    ``motors`` are those of a plant.
+    """
 
     path: Path
     model: str
@@ -73,6 +77,7 @@ class Bindings:
     inputs: Mapping[str, tuple[Span, Binding]]
     outputs: Mapping[str, tuple[Span, tuple[Binding, ...]]]  # empty tuple: unconnected on purpose
     parameters: Mapping[str, ParameterSetting]
+    motors: Mapping[str, Motor]
     root: YamlNode
 
 
@@ -100,6 +105,7 @@ def load_bindings(
         inputs=MappingProxyType(dict(_inputs(node, diagnostics))),
         outputs=MappingProxyType(dict(_outputs(node, diagnostics))),
         parameters=MappingProxyType(dict(_parameters(node, diagnostics))),
+        motors=motors_of(node, diagnostics),
         root=node,
     )
     return bindings if diagnostics.error_count == before else None

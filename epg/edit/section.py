@@ -19,7 +19,7 @@ from epg.dataclass import dataclass
 from epg.edit import yaml_edit
 from epg.edit.scalars import scalar_text
 
-ORDER = ("version", "model", "inputs", "outputs", "parameters")
+ORDER = ("version", "model", "inputs", "outputs", "parameters", "motors")
 """The keys of a bindings file, in the order in which EPG writes them."""
 _SECTIONS = ("inputs", "outputs")
 _OPEN_PORT = re.compile(r"# (.*):    # no name matches; possible: .*")

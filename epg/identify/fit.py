@@ -9,8 +9,9 @@ The problem has at most six unknowns and is smooth, so the Levenberg-Marquardt m
 bounds is a projection, and an unknown at its bound is left out while its gradient points outwards.  The start is the
 best of a grid of time constants and frictions, for each of which position and gain follow from a linear regression.
 
-The standard errors are those of least squares, times the square root of the residual's correlation time in samples:
-the residual of counted positions is not white, because a count stays the same for several samples.
+The standard errors are those of least squares, times the square root of the residual's correlation time in points.
+This time is at least ``_ROUNDED`` if the residual is that of rounding: the rounding errors of a uniform movement repeat
+in a pattern, which can shift all values a little and looks like white noise.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from epg.identify.samples import Samples
 MOST_DELAY = 3.0
 """The largest delay, in samples."""
 _TAUS, _FRICTIONS = 12, (0.0, 0.15, 0.4)
+_ROUNDED = 4.0
 _OFFSET, _GAIN, _TAU, _FRICTION, _DELAY, _SPEED = range(6)
 
 
@@ -75,33 +77,40 @@ def fit(samples: Samples) -> Fit:
     def simulate(unknowns: Any) -> Any:
         return unknowns[_OFFSET] + unknowns[_GAIN] * unit(unknowns)
 
+    points = samples.points
+    target = points.of(measured)
+
+    def residual_of(unknowns: Any) -> Any:
+        return target - points.of(simulate(unknowns))
+
     def jacobian(unknowns: Any) -> Any:
-        columns = [np.ones(len(time)), unit(unknowns)]
+        columns = [np.ones(len(target)), points.of(unit(unknowns))]
         steps = [0.0, 0.0, 1e-4, 1e-4 * largest, 1e-2 * step, 1e-4 * largest]
         for at in range(_TAU, _SPEED + 1):
             if fixed[at]:
-                columns.append(np.zeros(len(time)))
+                columns.append(np.zeros(len(target)))
                 continue
             above, below = unknowns.copy(), unknowns.copy()
             above[at] = min(unknowns[at] + steps[at], high[at])
             below[at] = max(unknowns[at] - steps[at], low[at])
-            columns.append(unknowns[_GAIN] * (unit(above) - unit(below)) / (above[at] - below[at]))
+            slope = points.of(unit(above) - unit(below)) / (above[at] - below[at])
+            columns.append(unknowns[_GAIN] * slope)
         return np.stack(columns, axis=1)
 
     starts = sorted(_starts(samples, unit, step, length, largest), key=lambda found: float(found[0]))
     best: tuple[float, Any] | None = None
     for _, start in starts[:3]:
-        cost, unknowns = _least_squares(lambda u: measured - simulate(u), jacobian, start, low, high, fixed)
+        cost, unknowns = _least_squares(residual_of, jacobian, start, low, high, fixed)
         if best is None or cost < best[0]:
             best = cost, unknowns
     assert best is not None
-    cost, unknowns = best
+    unknowns = best[1]
     simulated = simulate(unknowns)
-    residual = measured - simulated
     free = ~fixed & (unknowns > low) & (unknowns < high)
     slopes = jacobian(unknowns)[:, free]
     errors = np.full(6, 0.0)
-    errors[free] = _errors(slopes, residual)
+    rms = float(np.sqrt(((measured - simulated) ** 2).mean()))
+    errors[free] = _errors(slopes, residual_of(unknowns), _ROUNDED if rms < samples.resolution else 1.0)
     tau = math.exp(unknowns[_TAU])
     return Fit(
         gain=Value(float(unknowns[_GAIN]), float(errors[_GAIN])),
@@ -109,7 +118,7 @@ def fit(samples: Samples) -> Fit:
         friction=Value(float(unknowns[_FRICTION]), float(errors[_FRICTION])),
         delay=Value(float(unknowns[_DELAY]), float(errors[_DELAY])),
         simulated=simulated,
-        rms=math.sqrt(cost / len(time)),
+        rms=rms,
     )
 
 
@@ -191,15 +200,15 @@ def _least_squares(
     return cost, unknowns
 
 
-def _errors(slopes: Any, residual: Any) -> Any:
-    """The standard errors of the unknowns with these ``slopes``."""
+def _errors(slopes: Any, residual: Any, least: float) -> Any:
+    """The standard errors of the unknowns with these ``slopes``, for a correlation time of ``least`` or more."""
     import numpy as np
 
     count, unknowns = slopes.shape
     scale = np.sqrt((slopes * slopes).sum(axis=0))
     scale[scale == 0.0] = 1e-300  # an unknown without effect is unknown
     normal = (slopes / scale).T @ (slopes / scale)
-    variance = float(residual @ residual) / max(count - unknowns, 1) * _correlation_time(residual)
+    variance = float(residual @ residual) / max(count - unknowns, 1) * max(_correlation_time(residual), least)
     values, vectors = np.linalg.eigh(normal)
     inverse = ((vectors / np.maximum(values, 1e-15)) * vectors).sum(axis=1)
     return np.sqrt(inverse * variance) / scale

@@ -40,8 +40,8 @@ def travel(
             sign = math.copysign(1.0, speed) if speed else math.copysign(1.0, duty)
             final = 0.0 if speed == 0.0 and abs(duty) <= friction else duty - friction * sign
             until, rests = last, False
-            if speed * final < 0.0 or (speed != 0.0 and final == 0.0 and friction > 0.0):
-                reversal = begin + tau * math.log1p(-speed / final) if final else math.inf
+            if speed * final < 0.0:
+                reversal = begin + tau * math.log1p(-speed / final)
                 if reversal <= last:
                     until, rests = reversal, True
             upto = stop if not rests else done + int(np.searchsorted(time[done:stop], until, side="left"))

@@ -20,6 +20,7 @@ from epg.resolve.application import Application, Plant, ResolvedComponent, Wire
 from epg.resolve.claims import TICK, Claim, component_claims, tick_claims
 from epg.resolve.counters import check_counters, longest_gap
 from epg.resolve.other_code import clock_of, compare_clocks, divided_clocks, report_own_transports, report_streams
+from epg.resolve.motors import check_motors
 from epg.resolve.parameter_sizes import parameters_fit
 from epg.resolve.parameters import parameter_settings, parameter_values, ros_parameters
 from epg.resolve.topics import publications_of, subscriptions_of, value_indices_of
@@ -61,6 +62,10 @@ def resolve(
     wiring = Wiring(bindings, model, components, diagnostics)
     inputs, outputs = wiring.inputs(), wiring.outputs()
     settings = parameter_settings(bindings, model, diagnostics)
+    for motor in bindings.motors.values():
+        message = f"'{motor.duty}' is an input of a controller, not of a plant"
+        hint = "'motors' belongs into the bindings of the plant"
+        diagnostics.error("motors-of-controller", motor.span, message, hint=hint)
     served = ros_parameters(configuration.communication, model, diagnostics)
     if served and not parameters_fit(served, configuration, diagnostics):
         served = None
@@ -275,6 +280,7 @@ def wired_plant(plant: PlantFiles, components: Mapping[str, ResolvedComponent], 
     physical = {name: component for name, component in components.items() if not component.kind.communication}
     wiring = Wiring(bindings, model, physical, diagnostics, plant=True)
     inputs, outputs = wiring.inputs(), wiring.outputs()
+    check_motors(bindings, model, diagnostics)
     return Plant(model, inputs, outputs, parameter_values(parameter_settings(bindings, model, diagnostics)))
 
 
