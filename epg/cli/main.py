@@ -46,6 +46,7 @@ COMMANDS = {
     "replay": "feed a recording of a target to its host program, and compare the outputs",
     "record": "record the topics of a target or of a system on ROS 2",
     "describe": "write layouts for PlotJuggler and Foxglove with the values of a target",
+    "identify": "find a motor's gain, time constant and friction in a recording, for the plant",
     "plot": "compare a recorded run with another one, or with its simulation",
     "find-tools": "find SDKs and programs (CMake calls this)",
     "doctor": "list the tools that this computer has and those that are missing",

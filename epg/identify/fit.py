@@ -56,8 +56,11 @@ class Fit:
     rms: float
 
 
-def fit(samples: Samples) -> Fit:
-    """The motor whose simulated positions are nearest to the measured ones."""
+def fit(samples: Samples, *, dead_zone: bool = False) -> Fit:
+    """The motor whose simulated positions are nearest to the measured ones.
+
+    With ``dead_zone``, ``friction`` is the duty below which the motor is not driven at all, and there is no friction.
+    """
     import numpy as np
 
     time, measured = samples.time, samples.position
@@ -70,9 +73,11 @@ def fit(samples: Samples) -> Fit:
     def unit(unknowns: Any) -> Any:
         changes = [change + unknowns[_DELAY] for change in samples.changes]
         changes[0] = samples.changes[0]
-        return travel(
-            time, changes, samples.duties, math.exp(unknowns[_TAU]), float(unknowns[_FRICTION]), float(unknowns[_SPEED])
-        )
+        tau, friction, speed = math.exp(unknowns[_TAU]), float(unknowns[_FRICTION]), float(unknowns[_SPEED])
+        if dead_zone:
+            beyond = [math.copysign(max(abs(duty) - friction, 0.0), duty) for duty in samples.duties]
+            return travel(time, changes, beyond, tau, 0.0, speed)
+        return travel(time, changes, samples.duties, tau, friction, speed)
 
     def simulate(unknowns: Any) -> Any:
         return unknowns[_OFFSET] + unknowns[_GAIN] * unit(unknowns)

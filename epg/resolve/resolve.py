@@ -52,7 +52,7 @@ def resolve(
     ``board`` are the assignments on a board, if a simulation of it must have its frequencies and steps of PWM.
     """
     errors = diagnostics.error_count
-    _same_model(bindings, model, diagnostics)
+    check_model_name(bindings, model, diagnostics)
     period, divider = _period(configuration, model, diagnostics)
     assignments = allocate_hardware(configuration, period, diagnostics)
     if assignments is not None and board is not None:
@@ -147,7 +147,8 @@ def _bound_ports(components: Mapping[str, Component], outputs: Sequence[Wire], d
             diagnostics.error("needs-bound", span, message, hint=hint, notes=notes)
 
 
-def _same_model(bindings: Bindings, model: Model, diagnostics: Diagnostics) -> None:
+def check_model_name(bindings: Bindings, model: Model, diagnostics: Diagnostics) -> None:
+    """Reports bindings of another model."""
     if bindings.model != model.name:
         message = f"these bindings are for the model '{bindings.model}', but the model is '{model.name}'"
         notes = [Note("the model", model.span)]
@@ -276,7 +277,7 @@ def _plant(
 def wired_plant(plant: PlantFiles, components: Mapping[str, ResolvedComponent], diagnostics: Diagnostics) -> Plant:
     """The plant with the wires to the ``components`` that its bindings name.  Reports mistakes in the bindings."""
     model, bindings = plant.model, plant.bindings
-    _same_model(bindings, model, diagnostics)
+    check_model_name(bindings, model, diagnostics)
     physical = {name: component for name, component in components.items() if not component.kind.communication}
     wiring = Wiring(bindings, model, physical, diagnostics, plant=True)
     inputs, outputs = wiring.inputs(), wiring.outputs()
