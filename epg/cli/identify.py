@@ -8,7 +8,7 @@ import math
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from epg.cli.plot import check_picture
 from epg.diagnostics import Diagnostics, did_you_mean
@@ -75,7 +75,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     found = fit(samples, dead_zone=motor is not None and "dead_zone" in motor.formulas)
     unit = plant.unit(motor) if plant is not None and motor is not None else ""
     rows = _values(found, unit, motor)
-    title = f"{options.run.name}: " + ", ".join(" ".join(row[:2]) for row in rows[:3])
+    title = f"{options.run.name}: " + ", ".join(f"{name} {value} {of}" for name, value, _, of in rows[:3])
     plot_fit(samples, found, (options.position, options.duty), unit, title, output)
     judge_fit(found, samples, file, diagnostics)
     if diagnostics.has_errors:
@@ -88,7 +88,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     return _change(result, plant, motor, options, diagnostics)
 
 
-def _rows(recording: Recording, options: argparse.Namespace, diagnostics: Diagnostics) -> tuple[object, object, object]:
+def _rows(recording: Recording, options: argparse.Namespace, diagnostics: Diagnostics) -> tuple[Any, Any, Any]:
     """Times, positions and duties.  A duty holds until the next one; while a target is disabled, it is 0."""
     import numpy as np
 
@@ -115,11 +115,10 @@ def _rows(recording: Recording, options: argparse.Namespace, diagnostics: Diagno
     return time, position, duty
 
 
-def _held(time: object, value: object, at: object) -> object:
+def _held(time: Any, value: Any, at: Any) -> Any:
     import numpy as np
 
-    rows = np.searchsorted(np.asarray(time), np.asarray(at), side="right") - 1
-    return np.asarray(value)[np.maximum(rows, 0)]
+    return value[np.maximum(np.searchsorted(time, at, side="right") - 1, 0)]
 
 
 def _motor(plant: Plant, options: argparse.Namespace, diagnostics: Diagnostics) -> Motor | None:
@@ -188,7 +187,8 @@ class _Result:
         from epg.cli.table import table
 
         start = "from rest" if self.samples.at_rest else "already moving, or without rest before"
-        print(f"{begin:.3f} s to {end:.3f} s: {len(self.samples.time)} rows, {self.samples.counts:.0f} counts, {start}\n")
+        size = f"{len(self.samples.time)} rows, {self.samples.counts:.0f} counts"
+        print(f"{begin:.3f} s to {end:.3f} s: {size}, {start}\n")
         present = [f"{before[name] * (1e3 if 'time' in name else 1):.4g}" for name in before]
         heads = ("", "identified", "+-", "", *(("plant so far",) if before else ()))
         cells = present + [""] * (len(self.rows) - len(present))
@@ -221,9 +221,7 @@ class _Result:
         sys.stdout.write(to_json(data))
 
 
-def _change(
-    result: _Result, plant: Plant, motor: Motor, options: argparse.Namespace, diagnostics: Diagnostics
-) -> int:
+def _change(result: _Result, plant: Plant, motor: Motor, options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     """Prints the changes of the plant's parameters, and writes them if the user wants it and they are correct."""
     from epg.check.formulas import FormulaError
     from epg.edit.yaml_edit import CannotEdit

@@ -43,9 +43,9 @@ class Value:
 class Fit:
     """A motor that has been identified.
 
-    ``gain`` is the speed per unit of duty; ``friction`` is the duty that just moves the motor; ``delay`` is the time from
-    a row of the recording until its duty acts, beyond the ideal of no time.  ``simulated`` are positions at the samples'
-    times; ``rms`` is that of measured - simulated.
+    ``gain`` is the speed per unit of duty; ``friction`` is the duty that just moves the motor; ``delay`` is the time
+    from a row of the recording until its duty acts.  ``simulated`` are positions at the samples' times; ``rms`` is that
+    of measured - simulated.
     """
 
     gain: Value

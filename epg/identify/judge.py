@@ -25,11 +25,11 @@ def judge_samples(samples: Samples, position: str, duty: str, file: str, diagnos
     """Reports why the samples cannot be used, before a fit."""
     span = Span(file)
     if samples.stop is not None:
-        message = f"the motor reaches an end stop at {samples.stop:.3f} s: only the rows before it are used"
-        hint = "--until ends before the stop, --from begins behind it"
+        message = f"the motor reaches an end stop at {samples.stop:.3f} s: {_part(samples)}"
+        hint = "--from and --until choose another part"
         diagnostics.warning("identify-end-stop", span, message, hint=hint)
     if samples.jump is not None:
-        message = f"'{position}' jumps at {samples.jump:.3f} s, as after a reset: only one side of it is used"
+        message = f"'{position}' jumps at {samples.jump:.3f} s, as after a reset: {_part(samples)}"
         hint = "--from and --until choose another part"
         diagnostics.warning("identify-jump", span, message, hint=hint)
     if len(samples.time) < FEWEST_ROWS:
@@ -53,6 +53,12 @@ def judge_samples(samples: Samples, position: str, duty: str, file: str, diagnos
         diagnostics.error("identify-one-duty", span, message, hint=hint)
 
 
+def _part(samples: Samples) -> str:
+    if not len(samples.time):
+        return "no movement is left"
+    return f"only the movement from {float(samples.time[0]):.3f} s to {float(samples.time[-1]):.3f} s is used"
+
+
 def judge_fit(fit: Fit, samples: Samples, file: str, diagnostics: Diagnostics) -> None:
     """Reports why the identified values are of no use."""
     span = Span(file)
@@ -60,8 +66,7 @@ def judge_fit(fit: Fit, samples: Samples, file: str, diagnostics: Diagnostics) -
     largest = max(abs(duty) for duty in samples.duties)
     tau = fit.time_constant.value
     if fit.rms > MOST_RMS * samples.moved:
-        share = 100.0 * fit.rms / samples.moved
-        message = f"no motor of first order moves like this: the RMS of measured - simulated is {share:.0f} % of the way"
+        message = f"no motor of first order moves like this: {_rms(fit, samples)}"
         hint = "see the picture; are both signals of one motor, does it hit a stop, does gravity pull it?"
         diagnostics.error("identify-misfit", span, message, hint=hint)
     elif tau < samples.period:
@@ -83,14 +88,17 @@ def judge_fit(fit: Fit, samples: Samples, file: str, diagnostics: Diagnostics) -
         worst = max(errors, key=lambda name: errors[name])
         if errors[worst] > MOST_ERROR:
             of = "of the largest duty" if worst == "friction" else "of its value"
-            share = f"{100.0 * errors[worst]:.0f} %" if errors[worst] < 1.0 else "more than 100 %"
-            message = f"the {worst} is uncertain by {share} {of}, and at most {100.0 * MOST_ERROR:.0f} % is accepted"
+            by = f"{100.0 * errors[worst]:.0f} %" if errors[worst] < 1.0 else "more than 100 %"
+            message = f"the {worst} is uncertain by {by} {of}, and at most {100.0 * MOST_ERROR:.0f} % is accepted"
             diagnostics.error("identify-uncertain", span, message, hint=MORE)
         elif fit.rms > max(ROUGH_RMS * samples.moved, 1.5 * samples.resolution):
-            share = 100.0 * fit.rms / samples.moved
-            message = f"the motor is not quite one of first order: the RMS of measured - simulated is {share:.1f} % of the way"
+            message = f"the motor is not quite one of first order: {_rms(fit, samples)}"
             hint = "see the picture: belts, gears with play, and bridges that coast at a duty of 0 differ"
             diagnostics.warning("identify-rough", span, message, hint=hint)
+
+
+def _rms(fit: Fit, samples: Samples) -> str:
+    return f"the RMS of measured - simulated is {100.0 * fit.rms / samples.moved:.1f} % of the way"
 
 
 def relative(value: Value) -> float:

@@ -32,7 +32,7 @@ def travel(
     begin, position = float(time[0]), 0.0
     # The samples of each piece: those before its end.
     ends = [*changes[1:], math.inf]
-    stops = np.searchsorted(time, changes[1:], side="left").tolist() + [len(time)]
+    stops = [*np.searchsorted(time, changes[1:], side="left").tolist(), len(time)]
     done = 0
     for end, stop, duty in zip(ends, stops, duties, strict=True):
         last = min(end, float(time[-1]))

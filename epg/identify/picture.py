@@ -16,8 +16,8 @@ def plot_fit(samples: Samples, fit: Fit, names: tuple[str, str], unit: str, titl
     """Writes the picture.  ``names`` are the signals of position and duty, ``unit`` is that of the position."""
     span = (float(samples.time[0]), float(samples.time[-1]))
     figure, ((curve, error, duty),) = panels(Arrangement(1, 1, 1), _HEIGHTS, (), span)
-    curve.plot(samples.time, samples.position, color=ORANGE, linewidth=2.4, label="measured")
-    curve.plot(samples.time, fit.simulated, color=BLUE, linewidth=1.4, label="simulated")
+    curve.plot(samples.time, samples.position, color=ORANGE, linewidth=4.5, label="measured")
+    curve.plot(samples.time, fit.simulated, color=BLUE, linewidth=1.3, label="simulated")
     curve.set_ylabel(with_unit(names[0], unit))
     curve.set_title(title, fontsize=SMALL, loc="left", pad=3.0)
     legend(curve)

@@ -10,14 +10,15 @@ has none of these:
 
 The rest before and after the movement is left out, except for a tenth of its length.
 
-Most of the error of a counted position is that of rounding, and it is the same until the next count.  The fit therefore
-compares only *points* that say most: the mean of two rows between which the count has changed, and one row of each rest.
-The first error is at most the way of half a period, the errors are independent, and a long rest has no more weight than
-a short one.
+Most of the error of a counted position is that of rounding, and it is the same until the next count.  The fit
+therefore compares only *points*: the mean of two rows between which the count has changed, and one row of each rest.
+The error of the first is at most the way of half a period, the errors are independent, and a long rest has no more
+weight than a short one.
 """
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 from epg.dataclass import dataclass
@@ -44,7 +45,7 @@ class Samples:
 
     ``period`` is the time between two samples.  ``resolution`` is the smallest change of the position, ``moved`` the
     distance between the extreme positions.  ``at_rest`` is true if the motor rests at the begin; otherwise ``speed`` is
-    a guess of its first speed.  ``stop`` is the time at which an end stop ends the part, ``jump`` that of a reset.
+    a guess of its first speed.  ``stop`` is the first time at an end stop, ``jump`` that of the first reset.
     """
 
     time: Any
@@ -81,11 +82,10 @@ def samples_of(time: Any, position: Any, duty: Any) -> Samples:
     jumps = _jumps(steps, resolution)
     gaps = np.nonzero((np.diff(time) > _GAP * period) & (np.diff(duty) != 0.0))[0] + 1
     edges = sorted({0, len(time), *jumps, *gaps.tolist(), *(edge for stop in stops for edge in stop)})
-    inside = {begin for begin, _ in stops}
-    parts = [(a, b) for a, b in zip(edges, edges[1:]) if not any(begin <= a < end for begin, end in stops)]
+    parts = [(a, b) for a, b in pairwise(edges) if not any(begin <= a < end for begin, end in stops)]
     begin, end = max(parts, key=lambda part: _worth(position[part[0] : part[1]]), default=(0, len(time)))
-    stopped = float(time[end - 1]) if end in inside else None
-    jumped = float(time[end if end in jumps else begin]) if end in jumps or begin in jumps else None
+    stopped = float(time[stops[0][0]]) if stops else None
+    jumped = float(time[min(jumps)]) if jumps else None
     begin, end = _without_rest(position, duty, begin, end, resolution)
     time, position, duty = time[begin:end], position[begin:end], duty[begin:end]
     changed = np.concatenate(([0], np.nonzero(np.diff(duty))[0] + 1)) if len(duty) else np.array([], dtype=int)
@@ -152,7 +152,7 @@ def _stops(position: Any, duty: Any, resolution: float) -> list[tuple[int, int]]
     result = []
     signs = np.sign(duty)
     edges = [0, *(np.nonzero(np.diff(signs))[0] + 1).tolist(), len(duty)]
-    for begin, end in zip(edges, edges[1:]):
+    for begin, end in pairwise(edges):
         if signs[begin] == 0.0 or end - begin < 2 * _STILL:
             continue
         last = end - 1

@@ -19,8 +19,8 @@ from epg.resolve.allocation import Assignment, Hardware, allocate
 from epg.resolve.application import Application, Plant, ResolvedComponent, Wire
 from epg.resolve.claims import TICK, Claim, component_claims, tick_claims
 from epg.resolve.counters import check_counters, longest_gap
-from epg.resolve.other_code import clock_of, compare_clocks, divided_clocks, report_own_transports, report_streams
 from epg.resolve.motors import check_motors
+from epg.resolve.other_code import clock_of, compare_clocks, divided_clocks, report_own_transports, report_streams
 from epg.resolve.parameter_sizes import parameters_fit
 from epg.resolve.parameters import parameter_settings, parameter_values, ros_parameters
 from epg.resolve.topics import publications_of, subscriptions_of, value_indices_of
