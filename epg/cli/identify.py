@@ -35,6 +35,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="use the recording from this time",
     )
     parser.add_argument("--until", type=float, default=math.inf, metavar="SECONDS", help="use it until this time")
+    parser.add_argument(
+        "--dead-zone",
+        action="store_true",
+        help="the motor has a dead zone in place of friction; default: as the plant's bindings say",
+    )
     parser.add_argument("--plant", type=Path, metavar="FOLDER", help="the model of the plant")
     parser.add_argument("--plant-bindings", type=Path, metavar="FILE", help="its bindings, with a section 'motors'")
     parser.add_argument("--motor", metavar="PORT", help="the plant's input; default: the one of the duty's actuator")
@@ -68,13 +73,15 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     motor = _motor(plant, options, diagnostics) if plant is not None else None
     diagnostics.stop_if_errors()
     assert recording is not None
+    if motor is not None:
+        options.dead_zone = "dead_zone" in motor.formulas
     samples = samples_of(*_rows(recording, options, diagnostics))
     file = str(options.run)
     judge_samples(samples, options.position, options.duty, file, diagnostics)
     diagnostics.stop_if_errors()
-    found = fit(samples, dead_zone=motor is not None and "dead_zone" in motor.formulas)
+    found = fit(samples, dead_zone=options.dead_zone)
     unit = plant.unit(motor) if plant is not None and motor is not None else ""
-    rows = _values(found, unit, motor)
+    rows = _values(found, unit, options.dead_zone)
     title = f"{options.run.name}: " + ", ".join(f"{name} {value} {of}" for name, value, _, of in rows[:3])
     plot_fit(samples, found, (options.position, options.duty), unit, title, output)
     judge_fit(found, samples, file, diagnostics)
@@ -140,9 +147,9 @@ def _motor(plant: Plant, options: argparse.Namespace, diagnostics: Diagnostics) 
     return found
 
 
-def _values(fit: Fit, unit: str, motor: Motor | None) -> list[tuple[str, str, str, str]]:
+def _values(fit: Fit, unit: str, dead_zone: bool) -> list[tuple[str, str, str, str]]:
     """Each quantity with its value, its error for a confidence of 95 %, and its unit."""
-    friction = "dead zone" if motor is not None and "dead_zone" in motor.formulas else "friction"
+    friction = "dead zone" if dead_zone else "friction"
     speed = f"{unit or 'position'}/s per unit of duty"
     return [
         ("gain", *_rounded(fit.gain, 1.0), speed),
@@ -187,14 +194,15 @@ class _Result:
         from epg.cli.table import table
 
         start = "from rest" if self.samples.at_rest else "already moving, or without rest before"
-        size = f"{len(self.samples.time)} rows, {self.samples.counts:.0f} counts"
-        print(f"{begin:.3f} s to {end:.3f} s: {size}, {start}\n")
+        counted = self.samples.counted
+        size = f"{len(self.samples.time)} rows, {f'{self.samples.counts:.0f} counts, ' if counted else ''}{start}"
+        print(f"{begin:.3f} s to {end:.3f} s: {size}\n")
         present = [f"{before[name] * (1e3 if 'time' in name else 1):.4g}" for name in before]
         heads = ("", "identified", "+-", "", *(("plant so far",) if before else ()))
         cells = present + [""] * (len(self.rows) - len(present))
         print(table(heads, [(*row, cell) if before else row for row, cell in zip(self.rows, cells)]))
-        rms = f"{self.fit.rms:.3g}, which is {self.fit.rms / self.samples.resolution:.2f} counts"
-        print(f"\nRMS of measured - simulated: {rms}")
+        counts = f", which is {self.fit.rms / self.samples.resolution:.2f} counts" if counted else ""
+        print(f"\nRMS of measured - simulated: {self.fit.rms:.3g}{counts}")
         print(f"wrote {self.picture}")
         if diff:
             print(f"\n{diff}", end="")
@@ -210,7 +218,7 @@ class _Result:
             "from": float(self.samples.time[0]),
             "until": float(self.samples.time[-1]),
             "rows": len(self.samples.time),
-            "counts": self.samples.counts,
+            "counts": self.samples.counts if self.samples.counted else None,
             "values": {name: {"value": each.value, "standard_error": each.error} for name, each in values.items()},
             "rms": self.fit.rms,
             "plant": dict(before),

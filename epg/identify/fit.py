@@ -104,7 +104,7 @@ def fit(samples: Samples, *, dead_zone: bool = False) -> Fit:
 
     starts = sorted(_starts(samples, unit, step, length, largest), key=lambda found: float(found[0]))
     best: tuple[float, Any] | None = None
-    for _, start in starts[:3]:
+    for start in _different(starts):
         cost, unknowns = _least_squares(residual_of, jacobian, start, low, high, fixed)
         if best is None or cost < best[0]:
             best = cost, unknowns
@@ -155,6 +155,12 @@ def _starts(
     return found
 
 
+def _different(starts: list[tuple[float, Any]]) -> list[Any]:
+    """The best start, and the best one with another time constant, in case the first one leads to a local minimum."""
+    first = starts[0][1]
+    return [first, *[start for _, start in starts if abs(start[_TAU] - first[_TAU]) > 0.1][:1]]
+
+
 # One function, because its steps share the state of the search.
 def _least_squares(
     residual_of: Callable[[Any], Any],
@@ -174,7 +180,7 @@ def _least_squares(
     residual = residual_of(unknowns)
     cost = float(residual @ residual)
     damping = 1e-3
-    for _ in range(60):
+    for _ in range(40):
         slopes = jacobian(unknowns)
         gradient = slopes.T @ residual
         held = fixed | ((unknowns <= low) & (gradient < 0.0)) | ((unknowns >= high) & (gradient > 0.0))
@@ -200,7 +206,7 @@ def _least_squares(
         gained = (cost - new_cost) / cost
         unknowns, residual, cost = candidate, new, new_cost
         damping = max(damping / 10.0, 1e-12)
-        if gained < 1e-10:
+        if gained < 1e-8:
             break
     return cost, unknowns
 

@@ -16,7 +16,7 @@ FEWEST_COUNTS = 20
 MOST_ERROR = 0.1
 """The largest error of a value, for a confidence of 95 %: of gain and time constant as a share of the value, of the
 friction as a share of the largest duty."""
-MOST_RMS, ROUGH_RMS = 0.05, 0.01
+MOST_RMS, ROUGH_RMS = 0.05, 0.003
 """RMS of measured - simulated, as a share of the movement: refused above, and a warning."""
 MORE = "record the rest before the movement, a longer jog in both directions, and the run-out: see docs/identify.md"
 
@@ -43,7 +43,7 @@ def judge_samples(samples: Samples, position: str, duty: str, file: str, diagnos
         message = f"the motor does not move: '{position}' has one value in all rows"
         hint = "drive it with a larger duty; see that both signals belong to one motor"
         diagnostics.error("identify-still", span, message, hint=hint)
-    elif samples.counts < FEWEST_COUNTS:
+    elif samples.counted and samples.counts < FEWEST_COUNTS:
         message = f"the motor moves by {samples.counts:.0f} counts, and at least {FEWEST_COUNTS} are needed"
         hint = "drive it longer, or with a larger duty"
         diagnostics.error("identify-few-counts", span, message, hint=hint)
@@ -93,7 +93,7 @@ def judge_fit(fit: Fit, samples: Samples, file: str, diagnostics: Diagnostics) -
             diagnostics.error("identify-uncertain", span, message, hint=MORE)
         elif fit.rms > max(ROUGH_RMS * samples.moved, 1.5 * samples.resolution):
             message = f"the motor is not quite one of first order: {_rms(fit, samples)}"
-            hint = "see the picture: belts, gears with play, and bridges that coast at a duty of 0 differ"
+            hint = "see the picture; has the motor a dead zone (--dead-zone), a belt, or a bridge that coasts at a duty of 0?"
             diagnostics.warning("identify-rough", span, message, hint=hint)
 
 

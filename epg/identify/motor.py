@@ -11,6 +11,7 @@ All values are proportional to the gain, if the first speed is.  Therefore this 
 from __future__ import annotations
 
 import math
+from bisect import bisect_left
 from collections.abc import Sequence
 from typing import Any
 
@@ -28,41 +29,39 @@ def travel(
     """
     import numpy as np
 
-    result = np.empty(len(time))
-    begin, position = float(time[0]), 0.0
-    # The samples of each piece: those before its end.
-    ends = [*changes[1:], math.inf]
-    stops = [*np.searchsorted(time, changes[1:], side="left").tolist(), len(time)]
-    done = 0
-    for end, stop, duty in zip(ends, stops, duties, strict=True):
-        last = min(end, float(time[-1]))
+    # Lists, because single values of an array are slow.
+    times: list[float] = time.tolist()
+    result = [0.0] * len(times)
+    exp = math.exp
+    begin, position, done, end_of_all = times[0], 0.0, 0, times[-1]
+    stops = [*np.searchsorted(time, changes[1:], side="left").tolist(), len(times)]
+    for end, stop, duty in zip([*changes[1:], math.inf], stops, duties, strict=True):
+        last = end if end < end_of_all else end_of_all
         while begin < last or done < stop:
-            sign = math.copysign(1.0, speed) if speed else math.copysign(1.0, duty)
-            final = 0.0 if speed == 0.0 and abs(duty) <= friction else duty - friction * sign
-            until, rests = last, False
+            # The final speed of this piece, and its end: that of the duty, or the time at which the motor stops.
+            if speed:
+                final = duty - math.copysign(friction, speed)
+            else:
+                final = 0.0 if abs(duty) <= friction else duty - math.copysign(friction, duty)
+            until, upto, rests = last, stop, False
             if speed * final < 0.0:
                 reversal = begin + tau * math.log1p(-speed / final)
                 if reversal <= last:
-                    until, rests = reversal, True
-            upto = stop if not rests else done + int(np.searchsorted(time[done:stop], until, side="left"))
-            count = upto - done
-            if count > FEW:
+                    until, upto, rests = reversal, bisect_left(times, reversal, done, stop), True
+            slip = (speed - final) * tau
+            if upto - done > FEW:
                 elapsed = time[done:upto] - begin
-                part = final * elapsed
-                part -= (speed - final) * tau * np.expm1(-elapsed / tau)
-                result[done:upto] = position + part
+                result[done:upto] = (position + final * elapsed - slip * np.expm1(-elapsed / tau)).tolist()
             else:
                 for at in range(done, upto):
-                    result[at] = position + _moved(float(time[at]) - begin, speed, final, tau)
+                    length = times[at] - begin
+                    result[at] = position + final * length + slip * (1.0 - exp(-length / tau))
             done = upto
             length = until - begin
-            position += _moved(length, speed, final, tau)
-            speed = 0.0 if rests else final + (speed - final) * math.exp(-length / tau)
+            decay = exp(-length / tau)
+            position += final * length + slip * (1.0 - decay)
+            speed = 0.0 if rests else final + (speed - final) * decay
             begin = until
             if begin >= last and not rests:
                 break
-    return result
-
-
-def _moved(elapsed: float, speed: float, final: float, tau: float) -> float:
-    return final * elapsed - (speed - final) * tau * math.expm1(-elapsed / tau)
+    return np.array(result)

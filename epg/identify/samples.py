@@ -8,6 +8,9 @@ has none of these:
 - a time at an end stop: the motor is driven as strongly as while it moved, and its position does not change;
 - missing rows during which the duty has changed.
 
+Of a part with more than ``MOST_ROWS`` rows, those are used in which the speed changes most: a simulation from the first
+position departs from the measured curve in the course of time, because no motor is exactly one of first order.
+
 The rest before and after the movement is left out, except for a tenth of its length.
 
 Most of the error of a counted position is that of rounding, and it is the same until the next count.  The fit
@@ -23,7 +26,7 @@ from typing import Any, NamedTuple
 
 from epg.dataclass import dataclass
 
-FEWEST_ROWS = 30
+FEWEST_ROWS, MOST_ROWS = 30, 2500
 _PAD = 0.1  # rest that is kept on both sides, as a share of the movement
 _STILL = 10  # samples without a count that are a rest
 _GAP = 2.5  # sampling periods
@@ -43,8 +46,8 @@ class Points(NamedTuple):
 class Samples:
     """``position`` at ``time`` (s), as arrays of numpy.  ``duties[i]`` acts from ``changes[i]`` on.
 
-    ``period`` is the time between two samples.  ``resolution`` is the smallest change of the position, ``moved`` the
-    distance between the extreme positions.  ``at_rest`` is true if the motor rests at the begin; otherwise ``speed`` is
+    ``period`` is the time between two samples.  ``resolution`` is the smallest change of the position, and
+    ``counted`` is true if all changes are multiples of it.  ``moved`` is the distance between the extreme positions.  ``at_rest`` is true if the motor rests at the begin; otherwise ``speed`` is
     a guess of its first speed.  ``stop`` is the first time at an end stop, ``jump`` that of the first reset.
     """
 
@@ -56,6 +59,7 @@ class Samples:
     duties: list[float]
     period: float
     resolution: float
+    counted: bool
     moved: float
     at_rest: bool
     speed: float
@@ -77,7 +81,8 @@ def samples_of(time: Any, position: Any, duty: Any) -> Samples:
     # Positions in a recording are rounded to the precision of float.
     noise = 1e-6 * float(np.abs(position).max() + np.ptp(position))
     real = steps[steps > noise]
-    resolution = float(real.min()) if len(real) else 0.0
+    resolution = _resolution(real)
+    fractions = np.abs(real / resolution - np.round(real / resolution)) if len(real) else real
     stops = _stops(position, duty, resolution)
     jumps = _jumps(steps, resolution)
     gaps = np.nonzero((np.diff(time) > _GAP * period) & (np.diff(duty) != 0.0))[0] + 1
@@ -87,6 +92,7 @@ def samples_of(time: Any, position: Any, duty: Any) -> Samples:
     stopped = float(time[stops[0][0]]) if stops else None
     jumped = float(time[min(jumps)]) if jumps else None
     begin, end = _without_rest(position, duty, begin, end, resolution)
+    begin, end = _liveliest(position, begin, end)
     time, position, duty = time[begin:end], position[begin:end], duty[begin:end]
     changed = np.concatenate(([0], np.nonzero(np.diff(duty))[0] + 1)) if len(duty) else np.array([], dtype=int)
     moves = np.abs(position - position[0]) > 0.5 * resolution if len(position) else np.array([], dtype=bool)
@@ -102,6 +108,7 @@ def samples_of(time: Any, position: Any, duty: Any) -> Samples:
         duties=[float(duty[at]) for at in changed],
         period=period,
         resolution=resolution,
+        counted=bool((fractions < 0.05).mean() > 0.9) if len(real) else False,
         moved=float(np.ptp(position)) if len(position) else 0.0,
         at_rest=driven >= _STILL and first >= driven,
         speed=float(position[head - 1] - position[0]) / max(float(time[head - 1] - time[0]), period) if head > 1 else 0,
@@ -125,6 +132,31 @@ def _points(position: Any, resolution: float) -> Points:
     order = np.argsort(first, kind="stable")
     second = np.array([*moved, *rests], dtype=int)
     return Points(first[order], second[order])
+
+
+def _resolution(steps: Any) -> float:
+    """The smallest step, as the mean of all small steps: a single one is rounded."""
+    import numpy as np
+
+    if not len(steps):
+        return 0.0
+    least = float(steps.min())
+    small = steps[steps < 8.5 * least]
+    return float(small.sum() / np.round(small / least).sum())
+
+
+def _liveliest(position: Any, begin: int, end: int) -> tuple[int, int]:
+    """The rows with the largest variance of the speed."""
+    import numpy as np
+
+    if end - begin <= MOST_ROWS:
+        return begin, end
+    speed = position[begin + _STILL : end] - position[begin : end - _STILL]
+    sums, squares = (np.concatenate(([0.0], np.cumsum(each))) for each in (speed, speed * speed))
+    size = MOST_ROWS - _STILL
+    mean = (sums[size:] - sums[:-size]) / size
+    first = begin + int(((squares[size:] - squares[:-size]) / size - mean * mean).argmax())
+    return first, first + MOST_ROWS
 
 
 def _worth(position: Any) -> float:
