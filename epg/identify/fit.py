@@ -112,6 +112,7 @@ def fit(samples: Samples, *, dead_zone: bool = False) -> Fit:
     unknowns = best[1]
     simulated = simulate(unknowns)
     free = ~fixed & (unknowns > low) & (unknowns < high)
+    free[_FRICTION] = True  # also at its limit: gain and friction of a single duty cannot be told apart
     slopes = jacobian(unknowns)[:, free]
     errors = np.full(6, 0.0)
     rms = float(np.sqrt(((measured - simulated) ** 2).mean()))

@@ -167,14 +167,16 @@ def _worth(position: Any) -> float:
 
 
 def _jumps(steps: Any, resolution: float) -> set[int]:
-    """The rows before which the position jumps, farther than a motor moves in a period."""
+    """The rows before which the position jumps: much farther than in the periods before and after."""
     import numpy as np
 
-    moving = steps[steps > 0.5 * resolution]
-    if len(moving) < _STILL:
-        return set()
-    usual = float(np.quantile(moving, 0.9))
-    return set((np.nonzero(steps > max(10.0 * usual, 10.5 * resolution))[0] + 1).tolist())
+    around = np.zeros(len(steps))
+    for shift in (-3, -2, -1, 1, 2, 3):
+        beside = np.roll(steps, shift)
+        beside[: max(shift, 0)] = 0.0
+        beside[len(steps) + min(shift, 0) :] = 0.0
+        around = np.maximum(around, beside)
+    return set((np.nonzero(steps > 10.0 * around + 10.5 * resolution)[0] + 1).tolist())
 
 
 def _stops(position: Any, duty: Any, resolution: float) -> list[tuple[int, int]]:
