@@ -75,20 +75,22 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     assert recording is not None
     if motor is not None:
         options.dead_zone = "dead_zone" in motor.formulas
-    samples = samples_of(*_rows(recording, options, diagnostics))
+    rows = _rows(recording, options, diagnostics)
+    diagnostics.stop_if_errors()
+    samples = samples_of(*rows)
     file = str(options.run)
     judge_samples(samples, options.position, options.duty, file, diagnostics)
     diagnostics.stop_if_errors()
     found = fit(samples, dead_zone=options.dead_zone)
     unit = plant.unit(motor) if plant is not None and motor is not None else ""
-    rows = _values(found, unit, options.dead_zone)
-    title = f"{options.run.name}: " + ", ".join(f"{name} {value} {of}" for name, value, _, of in rows[:3])
+    values = _values(found, unit, options.dead_zone)
+    title = f"{options.run.name}: " + ", ".join(f"{name} {value} {of}" for name, value, _, of in values[:3])
     plot_fit(samples, found, (options.position, options.duty), unit, title, output)
     judge_fit(found, samples, file, diagnostics)
     if diagnostics.has_errors:
         sys.stderr.write(f"epg identify: {output} shows the measured and the simulated curve\n")
         return 1
-    result = _Result(found, samples, rows, output)
+    result = _Result(found, samples, values, output)
     if plant is None or motor is None:
         result.print(options, {}, {}, "")
         return 0
