@@ -93,7 +93,9 @@ def judge_fit(fit: Fit, samples: Samples, file: str, diagnostics: Diagnostics) -
             diagnostics.error("identify-uncertain", span, message, hint=MORE)
         elif fit.rms > max(ROUGH_RMS * samples.moved, 1.5 * samples.resolution):
             message = f"the motor is not quite one of first order: {_rms(fit, samples)}"
-            hint = "see the picture; has the motor a dead zone (--dead-zone), a belt, or a bridge that coasts at a duty of 0?"
+            hint = (
+                "see the picture; has the motor a dead zone (--dead-zone), a belt, a bridge that coasts at a duty of 0?"
+            )
             diagnostics.warning("identify-rough", span, message, hint=hint)
 
 

@@ -46,9 +46,10 @@ class Points(NamedTuple):
 class Samples:
     """``position`` at ``time`` (s), as arrays of numpy.  ``duties[i]`` acts from ``changes[i]`` on.
 
-    ``period`` is the time between two samples.  ``resolution`` is the smallest change of the position, and
-    ``counted`` is true if all changes are multiples of it.  ``moved`` is the distance between the extreme positions.  ``at_rest`` is true if the motor rests at the begin; otherwise ``speed`` is
-    a guess of its first speed.  ``stop`` is the first time at an end stop, ``jump`` that of the first reset.
+    ``period`` is the time between two samples.  ``resolution`` is the smallest change of the position, and ``counted``
+    is true if all changes are multiples of it.  ``moved`` is the distance between the extreme positions.  ``at_rest``
+    is true if the motor rests at the begin; otherwise ``speed`` is a guess of its first speed.  ``stop`` is the first
+    time at an end stop, ``jump`` that of the first reset.
     """
 
     time: Any
