@@ -16,8 +16,11 @@ from collections.abc import Callable, Mapping, Sequence
 
 from epg.dataclass import dataclass
 
-# The name of a parameter of 20-sim has parts that are separated by "\"; that of an FMU, or of C, also by ".".
-_NAME = re.compile(r"[A-Za-z_]\w*(?:(?:\\|\.|::)[A-Za-z_]\w*|\[\d+(?:,\d+)*\])*")
+# A name or a number.  The name of a parameter of 20-sim has parts that are separated by "\"; that of an FMU, or of C,
+# also by ".".
+_WORD = re.compile(
+    r"(?P<name>[A-Za-z_]\w*(?:(?:\\|\.|::)[A-Za-z_]\w*|\[\d+(?:,\d+)*\])*)|(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+)
 _OPERATORS: Mapping[type[ast.operator], Callable[[float, float], float]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
@@ -64,16 +67,14 @@ def parse_formula(text: str) -> Formula:
     names: list[str] = []
 
     def numbered(found: re.Match[str]) -> str:
-        name = found[0]
-        if name in ("sqrt", "pi"):
-            return name
+        name = found["name"]
+        if name is None or name in ("sqrt", "pi"):
+            return found[0]
         if name not in names:
             names.append(name)
-        return f"_{names.index(name)}"
+        return f" _{names.index(name)} "
 
-    # An exponent such as the "e" of 1e-3 is a part of its number, not a name.
-    parts = re.split(r"((?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)", text)
-    written = "".join(part if at % 2 else _NAME.sub(numbered, part) for at, part in enumerate(parts))
+    written = _WORD.sub(numbered, text)
     try:
         tree = ast.parse(written.replace("^", "**").strip(), mode="eval").body
         _check(tree)

@@ -215,7 +215,9 @@ def _chosen(client: Client, options: argparse.Namespace) -> list[str]:
         return [signal.name for signal in client.description.signals[:32]]
     names = []
     for word in options.signals.split(",") if options.signals != "none" else ():
-        found = [name for name in known if name == word or name.split(".", 1)[-1] == word]
+        ports = [name for name in known[: len(client.description.signals)] if word in (name, name.split(".", 1)[-1])]
+        # A port of the model has precedence: its short name can also be that of an actuator or an encoder.
+        found = ports or [name for name in known if word in (name, name.split(".", 1)[-1])]
         if len(found) != 1:
             problem = f"there is no signal '{word}'" if not found else f"several signals have the name '{word}'"
             raise Refused(f"{problem} ({did_you_mean(word, known, 'signals')})")

@@ -176,6 +176,7 @@ def solved(plant: Plant, motor: Motor, wanted: list[float]) -> dict[str, float]:
     if np.abs(miss).max() > 1e-6:
         quantity = list(motor.formulas)[int(np.abs(miss).argmax())]
         raise NoSolution(f"no values of {', '.join(change)} give the identified {quantity.replace('_', ' ')}")
+    present[np.abs(present) < 1e-9 * sizes] = 0.0
     result = dict(zip(change, (float(f"{value:.{DIGITS}g}") + 0.0 for value in present.tolist()), strict=True))
     for name, before in zip(change, old.tolist(), strict=True):
         if result[name] * before < 0.0 or (result[name] == 0.0 and name != change[-1]):
