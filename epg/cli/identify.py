@@ -111,6 +111,10 @@ def _rows(recording: Recording, options: argparse.Namespace, diagnostics: Diagno
     time, position = np.array(moved.time), np.array(moved.value)
     duty = _held(np.array(driven.time), np.array(driven.value), time)
     enabled = recording.signals.get("enabled")
+    if options.duty.startswith("outputs."):
+        message = f"'{options.duty}' is the duty that the model wants: jog and dead times give the actuator another one"
+        hint = "use 'actuators.<name>' of epg live, or 'plant.inputs.<port>' of a trace"
+        diagnostics.warning("identify-wanted-duty", Span.of_argument(options.duty, "--duty"), message, hint=hint)
     if enabled is not None and options.duty.startswith("outputs."):
         # The model of a disabled target still computes a duty, but its actuators are safe.
         duty = duty * (_held(np.array(enabled.time), np.array(enabled.value), time) > 0.5)

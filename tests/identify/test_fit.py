@@ -79,6 +79,24 @@ def test_the_values_are_those_of_the_physics(
         assert abs(value.value - true) <= 4.0 * value.error + 1e-3 * abs(true)  # and 0.1 % of the integration
 
 
+def test_a_dead_zone_is_not_friction() -> None:
+    """The run-out shows the difference: a motor with a dead zone runs out without friction."""
+    wanted = plan((0.1, 0.0), (0.25, 0.15), (0.3, 0.0), (0.3, -0.1), (0.3, 0.0))
+
+    def acting(time: float, position: float) -> float:
+        duty = wanted(time, position)
+        return math.copysign(max(abs(duty) - 0.021, 0.0), duty)
+
+    run = drive(SMOOTH, acting, 1.25)
+    run = Run(run.time, run.position, [wanted(time, 0.0) for time in run.time])
+    samples = samples_of(np.array(run.time), np.array(run.position), np.array(run.duty))
+    zone, friction = fit(samples, dead_zone=True), fit(samples)
+    assert zone.friction.value == pytest.approx(0.021, abs=0.0005)
+    assert zone.gain.value == pytest.approx(SMOOTH.gain, rel=0.01)
+    assert zone.rms < 0.5 * samples.resolution
+    assert friction.rms > 2.0 * zone.rms
+
+
 def test_errors_are_honest() -> None:
     """Of 40 runs with noise and another phase of the encoder, 95 % have their true values within the printed errors."""
     chance = random.Random(1)
