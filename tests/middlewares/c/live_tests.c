@@ -729,7 +729,7 @@ TEST(any_bytes_are_harmless)
             message[2] = 1;
             length += length % 2;
             for (size_t k = 3; k < length; k++) {
-                message[k] = k < 6 || k % 2 > 0 ? 0 : (unsigned char)(rand() % 12);
+                message[k] = (unsigned char)(k < 6 || k % 2 > 0 ? 0 : rand() % 14);
             }
             if (rand() % 2 > 0) {
                 message[6] = message[7] = 0xFF;
