@@ -71,18 +71,20 @@ class Description:
     node: str
     version: str
     hash: str
+    model: str  # identifies the model and the generated values of its parameters; empty for a target of an earlier EPG
     period: float  # of the control cycle, in seconds
     setpoints: tuple[str, ...]
     publications: tuple[str, ...]
     signals: tuple[Signal, ...]  # the ports of the model
     loop: tuple[Signal, ...]  # durations of the control loop; empty for a target of an earlier EPG
+    replay: tuple[
+        Signal, ...
+    ]  # the values that a replay needs beside the signals; empty for a target of an earlier EPG
     duties: tuple[Signal, ...]  # the present duties of the actuators
     positions: tuple[Signal, ...]  # of the encoders
     actuators: tuple[str, ...]
     encoders: tuple[str, ...]
     parameters: tuple[Parameter, ...]
-    model: str = ""  # identifies the model and the generated values of its parameters
-    replay: tuple[Signal, ...] = ()  # what a replay needs beside the signals; empty for a target of an earlier EPG
 
     @property
     def streamed(self) -> tuple[Signal, ...]:
@@ -236,18 +238,18 @@ class Client:
             node=words.get("node", ""),
             version=words.get("epg", ""),
             hash=words.get("hash", ""),
+            model=words.get("model", ""),
             period=float(words.get("period", "0.001")),
             setpoints=names("setpoint"),
             publications=names("publication"),
             signals=signals("signal", ""),
             loop=signals("loop", "loop."),
+            replay=signals("replay", "replay."),
             duties=signals("actuator", "actuators."),
             positions=signals("encoder", "encoders."),
             actuators=names("actuator"),
             encoders=names("encoder"),
             parameters=parameters,
-            model=words.get("model", ""),
-            replay=signals("replay", "replay."),
         )
 
     # Messages

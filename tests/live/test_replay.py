@@ -307,6 +307,6 @@ def test_a_program_refuses_wrong_recordings_by_itself(text: Text, programs: Path
 def test_a_target_that_cannot_be_recorded(ports: int, extra: int, text: str) -> None:
     signals = tuple(Signal(f"inputs.{number}", "") for number in range(ports))
     replay = tuple(Signal(f"replay.{number}", "") for number in range(extra))
-    found = Description("a", "a", "1", "2", 0.001, (), (), signals, (), (), (), (), "3", replay)
+    found = Description("a", "a", "1", "2", "3", 0.001, (), (), signals, (), replay, (), (), (), (), ())
     with pytest.raises(Refused, match=re.escape(text)):
         signals_to_record(found)
