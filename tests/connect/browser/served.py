@@ -41,6 +41,11 @@ class Served(Page):
             if "http" in line:
                 return line.split()[-1]
 
+    @property
+    def process(self) -> int:
+        """The number of the process."""
+        return self._process.pid
+
     def __enter__(self) -> Served:
         return self
 
