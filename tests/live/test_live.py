@@ -20,6 +20,7 @@ from epg.live.client import Client, Lost, Refused, Rows
 from epg.live.port import Port, PortError
 
 from .target import LATE, LEASE, Target
+from .witness import CYCLE, Robot, build_robot
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -130,7 +131,7 @@ def test_a_port_without_a_target_is_not_a_target(tmp_path: Path) -> None:
 # Leases
 
 
-def enabled_by(target: Target) -> subprocess.Popen[str]:
+def enabled_by(target: Target | Robot) -> subprocess.Popen[str]:
     """A program that has enabled the target on a lease."""
     program = start(target.port, "--send", "disable", "--send", "enable", "--duration", "60")
     assert program.stdout is not None
@@ -147,26 +148,28 @@ def test_a_target_stays_enabled_while_its_program_runs(target: Target) -> None:
     assert target.is_enabled(), "it was asked at once"
 
 
-def test_a_killed_program_leaves_the_target_disabled(target: Target) -> None:
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
+def test_the_actuator_is_safe_within_300_ms_and_a_cycle(tmp_path: Path, number: signal.Signals) -> None:
+    """In the time of the target.  tests/connect/browser/test_failures.py does the same with the page."""
+    with Robot(build_robot(tmp_path / "build"), tmp_path) as robot:
+        program = enabled_by(robot)
+        time.sleep(1)
+        assert robot.is_driven()
+        program.send_signal(number)
+        at = time.monotonic()
+        robot.wait(driven=False)
+        program.kill()
+        program.communicate()
+        (span,) = robot.spans()
+        assert span.last <= at + LEASE + CYCLE
+
+
+def test_the_fault_of_a_lease_that_has_ended_is_reported(target: Target) -> None:
     program = enabled_by(target)
-    time.sleep(0.5)
     program.kill()
-    begin = time.monotonic()
     program.communicate()
-    while target.is_enabled():
-        assert time.monotonic() < begin + LEASE + LATE
-    assert "fault: operator" in target.report()
-
-
-def test_a_stopped_program_leaves_the_target_disabled(target: Target) -> None:
-    program = enabled_by(target)
-    time.sleep(0.5)
-    program.send_signal(signal.SIGSTOP)
     time.sleep(LEASE + LATE)
-    report = target.report()
-    program.kill()
-    program.communicate()
-    assert "state        disabled, faults 1, fault: operator" in report
+    assert "state        disabled, faults 1, fault: operator" in target.report()
 
 
 def test_a_program_does_not_disable_a_target_that_another_one_enabled(target: Target) -> None:

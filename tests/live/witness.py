@@ -19,6 +19,8 @@ import pytest
 
 PROJECT = Path(__file__).resolve().parent / "robot"
 SIGNALS = 20
+CYCLE = 0.001
+"""Seconds of a control cycle."""
 
 
 class Span(NamedTuple):

@@ -11,7 +11,7 @@ import { colour, drawPlots } from "./plots.js";
 import { held, repeated } from "./press.js";
 import { recordingPart } from "./recording.js";
 import { saveFrom, savePng } from "./save.js";
-import { ask, current } from "./server.js";
+import { ask, askAlone, current } from "./server.js";
 import { timingPart } from "./timing.js";
 import { attempt, draw, say, ui } from "./ui.js";
 
@@ -28,6 +28,8 @@ export const liveTitle = ({ live: { target } }) =>
   target ? `Live ${isEnabled(target) ? "● enabled" : "○ disabled"}` : "Live";
 
 const isEnabled = (target) => target.state.enabled === "1";
+
+const move = askAlone("move");
 
 async function request(action, body) {
   const answer = await ask(action, body);
@@ -153,7 +155,7 @@ const faultPart = ({ fault }) =>
   fault &&
   h("p.failed-end", { key: "fault", role: "alert" }, icon("error"), h("b", fault.text), h("span.hint", fault.remedy));
 
-// Disables the target. It has a connection of its own, and is never behind other requests.
+// Disables the target. It has a connection of its own (see server.js), and is never behind other requests.
 function stop() {
   request("stop");
 }
@@ -361,7 +363,7 @@ const actuatorsPart = (target) =>
               key: String(duty),
               "aria-label": `Move ${name} ${duty < 0 ? "backwards" : "forwards"}`,
               disabled: isEnabled(target) || !target.matches,
-              ...repeated(() => ask("move", { actuator: name, duty }), PULSE),
+              ...repeated(() => move({ actuator: name, duty }), PULSE),
             },
             duty < 0 ? "−" : "+",
           ),

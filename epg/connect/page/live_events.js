@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The events of a running target: points for the plots, lines that it tells, and numbers that keep it enabled.
 
-import { ask, jsonLines } from "./server.js";
+import { askAlone, jsonLines } from "./server.js";
 
 export const WINDOW = 10; // seconds that are kept for the plots
 
@@ -18,6 +18,8 @@ export const live = {
 
 let reading = false;
 
+const respond = askAlone("respond");
+
 // Reads the events until the connection with the target ends. Calls `changed` after each.
 export async function followTarget(signals, changed) {
   if (reading) return;
@@ -26,7 +28,7 @@ export async function followTarget(signals, changed) {
   try {
     for await (const event of jsonLines("api/live/events")) {
       // A page that nobody sees must not keep a robot enabled.
-      if (event.number !== null && !document.hidden) ask("respond", { page, number: event.number });
+      if (event.number !== null && !document.hidden) respond({ page, number: event.number });
       for (const [time, lows, highs] of event.points) add(time, lows, highs);
       live.dropped = event.dropped;
       tell(event.lines);

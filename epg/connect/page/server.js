@@ -100,12 +100,17 @@ async function send(action, body) {
   return null;
 }
 
+// A browser opens six connections to a server, and streams of this and other tabs can occupy all of them. It keeps requests
+// with credentials apart from those without, so these actions have connections of their own. EPG does not use the credentials.
+const URGENT = new Set(["stop", "respond", "move", "enable"]);
+
 // Does an action on a running target at once: it does not wait for other actions. Returns the answer, or the error if it
 // was refused: {error: {message, hint}}.
 export async function ask(action, body = {}) {
   try {
     const answer = await request(`api/live/${action}`, {
       method: "POST",
+      credentials: URGENT.has(action) ? "same-origin" : "omit",
       headers: { "Content-Type": "application/json" },
       body: JSON.stringify(body),
     });
@@ -113,6 +118,18 @@ export async function ask(action, body = {}) {
   } catch {
     return { error: { message: "EPG does not answer", hint: "look at the robot" } };
   }
+}
+
+// A function that does an action as `ask` does, but not while its last one has no answer. Actions that are repeated then do
+// not queue up in a server that was stopped for a moment: it would do them late.
+export function askAlone(action) {
+  let waits = false;
+  return async (body) => {
+    if (waits) return;
+    waits = true;
+    await ask(action, body);
+    waits = false;
+  };
 }
 
 // The objects of an answer that arrive one by one, as lines of JSON.
@@ -160,7 +177,7 @@ async function get(address) {
 }
 
 async function request(address, options = {}) {
-  const answer = await fetch(address, { ...options, headers: { ...options.headers, ...sign() } });
+  const answer = await fetch(address, { credentials: "omit", ...options, headers: { ...options.headers, ...sign() } });
   if (answer.status === 401) lock();
   return answer;
 }

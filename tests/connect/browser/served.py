@@ -61,6 +61,13 @@ class Served(Page):
         assert self._process.stdout is not None
         self._process.stdout.close()
 
+    def kill(self) -> None:
+        """Ends the process as a crash does."""
+        self._process.kill()
+        self._process.wait(timeout=10)
+        assert self._process.stdout is not None
+        self._process.stdout.close()
+
     def wait(self) -> int:
         """Waits until the process ends by itself; returns its exit code."""
         return self._process.wait(timeout=10)

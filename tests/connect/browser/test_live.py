@@ -186,6 +186,21 @@ def test_the_first_three_minutes(jiwy: Any, open_page: Open, jiwy_host: Path) ->
         assert "'Pan\\PID\\kp': 2.2" in steps
 
 
+def test_stop_is_not_behind_the_streams_of_many_tabs(jiwy: Any, page: Any, target: Target) -> None:
+    """A browser opens six connections to a server.  Three tabs that show a target use all of them."""
+    page.evaluate(
+        "(async () => { const { jsonLines } = await import(new URL('server.js', location));"
+        " for (let n = 0; n < 4; n++) jsonLines('api/live/events').next(); })()"
+    )
+    enable(page)
+    page.wait_for_timeout(1000)
+    assert jiwy.epg.state()["live"]["target"]["state"]["enabled"] == "1", "its numbers are answered"
+    page.get_by_role("button", name="Stop").click()
+    page.wait_for_timeout(500)
+    state = jiwy.epg.state()["live"]["target"]["state"]
+    assert (state["enabled"], state["fault"]) == ("0", "none"), "it was stopped, and not by the end of its lease"
+
+
 def test_an_actuator_moves_while_its_button_is_held(page: Any) -> None:
     button = page.get_by_role("button", name="Move pwm_pan forwards")
     before = page.locator(".live-signals .value").first.inner_text()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Live for a long time: 20 signals at 1 kHz lose no row, take no more memory, and never keep the page busy for 100 ms."""
+"""Live for long: 20 signals at 1 kHz lose no row, take no more memory, and never keep the page busy for 100 ms."""
 
 from __future__ import annotations
 
