@@ -55,10 +55,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--record", type=Path, metavar="FILE", help="also writes a recording for 'epg replay', with every control cycle"
     )
+    parser.add_argument(
+        "--keep", type=Path, metavar="FILE", help="writes the changed parameters into the bindings FILE, and ends"
+    )
     parser.add_argument("--force", action="store_true", help="overwrite these files")
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+    from epg.edit.yaml_edit import CannotEdit
     from epg.live.client import Client, Lost, Refused
     from epg.live.open import open_port
     from epg.live.port import PortError
@@ -76,6 +80,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         option = "--signals" if options.signals is not None else "--every"
         hint = f"remove {option}, or record with --csv or --mcap"
         diagnostics.error("record-all", Span.of_argument(str(options.record), "--record"), message, hint=hint)
+    kept = diagnostics.checked(_bindings(options.keep, diagnostics)) if options.keep is not None else ""
     diagnostics.stop_if_errors()
     relay = _Relay()
     try:
@@ -86,7 +91,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
             try:
                 names = _chosen(client, options)
                 values = Values(len(names))
-                shows = sys.stdin.isatty() and sys.stdout.isatty() and not options.json
+                shows = sys.stdin.isatty() and sys.stdout.isatty() and not options.json and not options.keep
                 with _sinks(options, client, names) as sinks:
                     recording = Recording(Stream(names), [*sinks, values] if shows else sinks)
                     _start(recording, client, names, options)
@@ -98,7 +103,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
                     if shows:
                         relay.screen = Screen(client, names, values, recording, relay.faults)
                         relay.screen.run(end)
-                    elif options.duration is not None or not options.send:
+                    elif options.duration is not None or not (options.send or options.keep):
                         relay.wait(client, recording, end)
                     if names and not relay.lost:
                         client.stop_stream()
@@ -108,6 +113,8 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
                     print(f"{stream.rows} rows, {stream.dropped} dropped, {client.damaged} damaged frames")
                 if options.record is not None and recording.stream.dropped:
                     sys.stderr.write(_DROPPED)
+                if not relay.lost and (options.keep is not None or not options.json):
+                    _keep(client, options, kept)
             finally:
                 client.stop()
     except PortError as problem:
@@ -119,6 +126,8 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         return _failed(
             options, f"the target refused it: {problem}", "the command 'help' lists the commands, 'ports' the names"
         )
+    except CannotEdit as problem:
+        return _failed(options, f"the bindings were not changed: {problem}", "write the parameters into the file")
     except Lost as problem:
         relay.lost = relay.lost or str(problem)
     if relay.lost:
@@ -134,6 +143,41 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 _DROPPED = """A replay is not possible over dropped rows.
 hint: a larger 'capture' in 'communication' of the .tcf keeps more rows in memory
 """
+
+
+def _bindings(file: Path, diagnostics: Diagnostics) -> str | None:
+    """The text of bindings; None after a message if they have a mistake."""
+    from epg.documents.schema import load_schema, validate
+    from epg.documents.text_file import read_text
+    from epg.documents.yaml_file import parse_yaml
+
+    text = read_text(file, diagnostics)
+    root = parse_yaml(text, str(file), diagnostics) if text is not None else None
+    return text if root is not None and validate(root, load_schema("bindings"), diagnostics) else None
+
+
+def _keep(client: Client, options: argparse.Namespace, bindings: str) -> None:
+    """Writes the changed parameters into the bindings, or says which ones there are.
+
+    :raises Lost: the target does not answer
+    """
+    from epg.edit.parameters import set_parameters
+    from epg.live.client import Refused
+
+    try:
+        changed = {each.name: each.value for each in client.parameters() if each.value != each.generated}
+    except Refused:  # a target without parameters
+        changed = {}
+    said = " ".join(f"{name}={value!r}" for name, value in changed.items())
+    if options.keep is not None:
+        text = set_parameters(bindings, str(options.keep), changed)
+        if text != bindings:
+            options.keep.write_text(text, encoding="utf-8", newline="")
+        if not options.json:
+            print(f"{options.keep} has {said}" if changed else "no parameter differs from those of the firmware")
+    elif changed:
+        print(f"changed parameters: {said}")
+        print(f"hint: 'epg live {options.port} --keep {client.description.name}.bindings.yaml' keeps them")
 
 
 def _failed(options: argparse.Namespace, message: str, hint: str) -> int:
@@ -212,7 +256,7 @@ def _chosen(client: Client, options: argparse.Namespace) -> list[str]:
 
         return signals_to_record(client.description)
     if options.signals is None:
-        return [signal.name for signal in client.description.signals[:32]]
+        return [signal.name for signal in client.description.signals[:32]] if options.keep is None else []
     names = []
     for word in options.signals.split(",") if options.signals != "none" else ():
         ports = [name for name in known[: len(client.description.signals)] if word in (name, name.split(".", 1)[-1])]

@@ -17,11 +17,12 @@ from epg.catalog.catalog import Catalog
 from epg.check.names import identifier_problem
 from epg.connect.body import Refused
 from epg.connect.draft import Change, Operation, RemoveValue, RenameKey, SetEnds, SetParameter, SetValue
-from epg.connect.forms import PARAMETERS, Data, field_at, parameter_path, value_of
+from epg.connect.forms import Data, field_at, value_of
 from epg.connect.loaded import Loaded
 from epg.dataclass import dataclass
 from epg.diagnostics import Diagnostics
 from epg.edit.bindings import End, ends_of
+from epg.edit.parameters import PARAMETERS, parameter_path
 from epg.project import Request, load_configuration
 from epg.quantity import number_hint
 from epg.resolve.first_fit import first_fit, signals_of
@@ -110,7 +111,7 @@ def fill(forms: Data, loaded: Loaded, path: tuple[str, ...], text: str) -> list[
         value = value_of(found, text, Refused) if text else None
         if not (value is None or isinstance(value, (int, float))):
             raise Refused(f"'{text}' is not a number", number_hint(text))
-        return [SetParameter(parameter_path(loaded, path[1]), value)]
+        return [SetParameter(parameter_path(loaded.root, path[1]), value)]
     if text:
         return [SetValue(path, value_of(found, text, Refused))]
     if forms["values"].get(".".join(path), {}).get("removed"):

@@ -13,10 +13,10 @@ from epg.connect.body import Body, Refused, bodies, ends, keys, names, text
 from epg.connect.component_edits import add, copy, fill, remove, rename, take_back
 from epg.connect.draft import RemoveValue, SetEnds, SetValue
 from epg.connect.editor import Editor
-from epg.connect.forms import PARAMETERS
 from epg.connect.pinout import chosen_pin, first_pins
 from epg.connect.view import proposals_of
 from epg.edit.bindings import End
+from epg.edit.parameters import PARAMETERS
 
 
 def _connect(editor: Editor, body: Body) -> None:

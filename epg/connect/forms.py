@@ -29,6 +29,7 @@ from epg.diagnostics import Diagnostics
 from epg.documents.schema import load_schema
 from epg.documents.tcf import TcfFile
 from epg.documents.yaml_file import parse_yaml
+from epg.edit.parameters import PARAMETERS, parameter_path
 from epg.edit.scalars import scalar_text
 from epg.quantity import show, units_of
 from epg.source import Span, YamlNode
@@ -37,7 +38,6 @@ Data = dict[str, Any]
 Path_ = tuple[str, ...]
 
 CONSOLE = "console"
-PARAMETERS = "parameters"
 _MOST_PARAMETERS = 300
 """The largest number of parameters of a model that get fields: each new state of the session has all fields."""
 _CONVERSION = ("scale", "offset", "unit", "limits")
@@ -216,19 +216,10 @@ def _parameters(loaded: Loaded) -> list[Data]:
     return [{"title": "Parameters of the model", "fields": fields}]
 
 
-def parameter_path(loaded: Loaded, name: str) -> Path_:
-    """The keys of the value of a parameter in the bindings, which can write ``.`` for ``\\``, and a map with limits."""
-    section = loaded.root.get(PARAMETERS) if loaded.root is not None else None
-    for key, node in section.items() if section is not None else ():
-        if key.replace(".", "\\") == name.replace(".", "\\"):
-            return (PARAMETERS, key, "value") if node.is_mapping else (PARAMETERS, key)
-    return PARAMETERS, name
-
-
 def _parameter_values(loaded: Loaded) -> Data:
     found: Data = {}
     for parameter in loaded.parts.model.parameters if loaded.parts.model is not None else ():
-        node = loaded.root.get(*parameter_path(loaded, parameter.name)) if loaded.root is not None else None
+        node = loaded.root.get(*parameter_path(loaded.root, parameter.name)) if loaded.root is not None else None
         if node is not None:
             place = {"how": "own", "file": node.span.file, "line": node.span.line, "own": True}
             found[f"{PARAMETERS}.{parameter.name}"] = {"text": _node_text(node), **place}

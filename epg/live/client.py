@@ -276,6 +276,8 @@ class Client:
                 self._answers.pop(tag, None)
             if self._lost:
                 raise Lost(self._lost)
+            if self._over.is_set() and not answer.lines:
+                raise Lost("the connection was ended")
             if answer.over.is_set():
                 if answer.lines[-1].startswith("error "):
                     raise Refused(answer.lines[-1].split(" ", 2)[-1])

@@ -257,6 +257,25 @@ def test_the_space_bar_disables_on_the_screen(target: Target) -> None:
     assert not target.is_enabled()
 
 
+def test_a_gain_is_kept_in_the_bindings(target: Target, tmp_path: Path) -> None:
+    bindings = tmp_path / "jiwy.bindings.yaml"
+    before = (ROOT / "examples/jiwy/jiwy.bindings.yaml").read_text() + "parameters:\n  Pan.PID.tauD: 0.05  # s\n"
+    bindings.write_text(before)
+    assert live(target.port, "--keep", bindings).stdout == "no parameter differs from those of the firmware\n"
+    done = live(target.port, "--signals", "none", "--send", "set Pan\\PID\\kp=2.2 Pan\\PID\\tauD=0.04")
+    command = f"epg live {target.port} --keep jiwy.bindings.yaml"
+    assert done.stdout == (
+        f"ok set\nchanged parameters: Pan\\PID\\kp=2.2 Pan\\PID\\tauD=0.04\nhint: '{command}' keeps them\n"
+    )
+    assert bindings.read_text() == before
+    done = live(target.port, "--keep", bindings)
+    assert done.stdout == f"{bindings} has Pan\\PID\\kp=2.2 Pan\\PID\\tauD=0.04\n", done.stderr
+    assert bindings.read_text() == before.replace("0.05  # s\n", "0.04  # s\n  'Pan\\PID\\kp': 2.2\n")
+    bindings.write_text("version: 1\nmodel: 5\n")
+    wrong = live(target.port, "--keep", bindings)
+    assert wrong.returncode == 1 and "jiwy.bindings.yaml:2:8: error" in wrong.stderr
+
+
 def test_a_fault_is_said_in_words(target: Target) -> None:
     commands = [word for line in ("disable", "tilt_subscriber=-0.2", "enable") for word in ("--send", line)]
     done = live(target.port, *commands, "--signals", "none", "--duration", "3")

@@ -7,6 +7,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -18,14 +19,26 @@ from pathlib import Path
 
 GRACE = 5.0
 """Seconds that programs get to end by themselves: Ninja and Make delete half-written files in this time."""
+NICE = 10
+"""The niceness of a modest program and of all that it starts."""
 
 
 class Process:
-    """One run of a program.  ``line`` is called with each line of its output and standard error, without line end."""
+    """One run of a program.  ``line`` is called with each line of its output and standard error, without line end.
+
+    A ``modest`` program has a low priority, because a running target may be watched and stopped beside it.
+    """
 
     def __init__(
-        self, command: Sequence[str], folder: Path, environment: Mapping[str, str], line: Callable[[str], None]
+        self,
+        command: Sequence[str],
+        folder: Path,
+        environment: Mapping[str, str],
+        line: Callable[[str], None],
+        *,
+        modest: bool = False,
     ) -> None:
+        self._modest = modest
         self._command, self._folder, self._environment, self._line = command, folder, environment, line
         self._lock = threading.Lock()
         self._process: subprocess.Popen[bytes] | None = None
@@ -37,6 +50,9 @@ class Process:
             if self._cancelled:
                 return -signal.SIGTERM
             self._process = self._start()
+            if self._modest and sys.platform != "win32":
+                with contextlib.suppress(OSError):  # it has ended already
+                    os.setpriority(os.PRIO_PROCESS, self._process.pid, NICE)
         reader = threading.Thread(target=self._read, name="output of a build", daemon=True)
         reader.start()
         status = self._process.wait()

@@ -60,7 +60,7 @@ def build(activity: Activity, job: Job, *, anyway: bool = False) -> tuple[Outcom
     activity.read_messages(messages)
     ask(plan.build)
     for step in plan.steps:
-        status = activity.run(step.name, step.command, step.folder, plan.environment)
+        status = activity.run(step.name, step.command, step.folder, plan.environment, modest=True)
         if activity.is_cancelled:
             return Outcome("cancelled", messages.finish(failed=False)), []
         if status != 0:

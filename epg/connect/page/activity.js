@@ -102,7 +102,8 @@ export function followActivities(state, outcomes) {
     if (activity.state !== last[name]) {
       if (activity.state === "running") {
         logs[name].lines = [];
-        ui.tab = TABS[name];
+        // Another tab or program can have started it. The buttons for a robot must not vanish for that.
+        if (ui.tab !== "live" || !state.live?.target) ui.tab = TABS[name];
       }
       if (last[name] === "running") say(outcomes[name](state));
       last[name] = activity.state;

@@ -8,6 +8,7 @@ import { closeDialog, openDialog } from "./dialog.js";
 import { h } from "./dom.js";
 import { icon } from "./icons.js";
 import { counted, shortFile } from "./problems.js";
+import { stopButton } from "./live.js";
 import { current } from "./server.js";
 import { simulate } from "./simulation.js";
 import { backToSystem } from "./system.js";
@@ -35,6 +36,7 @@ export function header(state) {
     targetButton(state),
     problemsButton(state),
     space,
+    stopButton(state),
     h(
       "p",
       { class: `saved${draft.changed ? " unsaved" : ""}`, key: "saved", role: "status" },

@@ -155,6 +155,15 @@ const faultPart = ({ fault }) =>
   fault &&
   h("p.failed-end", { key: "fault", role: "alert" }, icon("error"), h("b", fault.text), h("span.hint", fault.remedy));
 
+// Stop in the head of the page, for the other tabs. While the tab Live is shown, it has a button of its own.
+/** @param {State} state */
+export const stopButton = (state) =>
+  state.live?.target &&
+  !isShown() &&
+  h("button", { key: "stop-robot", class: "stop", onpointerdown: stop, onclick: stop }, "Stop robot");
+
+const isShown = () => ui.tab === "live" && ui.dock !== "closed";
+
 // Disables the target. It has a connection of its own (see server.js), and is never behind other requests.
 function stop() {
   request("stop");
@@ -165,7 +174,7 @@ window.addEventListener("keyup", (event) => spaceBar(event, false), { capture: t
 
 // In the tab Live the space bar stops the target, wherever the focus is, and does nothing else.
 function spaceBar(event, stops) {
-  if (event.key !== " " || ui.tab !== "live" || ui.dock === "closed" || !current()?.live?.target) return;
+  if (event.key !== " " || !isShown() || !current()?.live?.target) return;
   event.preventDefault();
   event.stopPropagation();
   if (stops && !event.repeat) stop();

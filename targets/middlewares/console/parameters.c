@@ -135,6 +135,21 @@ static bool sets_name(epg_console_session_t *session, const epg_console_command_
     return name;
 }
 
+/** Reports a number that is outside of the limits of its parameter. */
+static void refuse_number(epg_console_session_t *session, const epg_parameter_limits_t *limits, double value,
+                          const char *text)
+{
+    epg_console_output_t *output = &session->output;
+    const bool less = value < limits->minimum;
+    epg_console_begin(output, "error set this number is ");
+    epg_console_text(output, less ? "less than the minimum " : "more than the maximum ");
+    epg_console_double(output, less ? limits->minimum : limits->maximum);
+    epg_console_text(output, ": '");
+    epg_console_text(output, text);
+    epg_console_text(output, "'");
+    epg_console_end_or_drop(output);
+}
+
 void epg_console_set(epg_console_session_t *session, const epg_console_command_t *command)
 {
     if (sets_name(session, command)) {
@@ -163,7 +178,7 @@ void epg_console_set(epg_console_session_t *session, const epg_console_command_t
             return;
         }
         if (!epg_parameters_can_be(parameters, index, value)) {
-            epg_console_error(session, "set", "this number is outside of the limits:", text);
+            refuse_number(session, &parameters->limits[index], value, text);
             return;
         }
         changes[i - 1U] = (epg_parameter_change_t){.index = index, .value = value};

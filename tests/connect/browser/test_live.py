@@ -201,6 +201,23 @@ def test_stop_is_not_behind_the_streams_of_many_tabs(jiwy: Any, page: Any, targe
     assert (state["enabled"], state["fault"]) == ("0", "none"), "it was stopped, and not by the end of its lease"
 
 
+def test_stop_is_in_reach_in_every_tab(jiwy: Any, page: Any) -> None:
+    for leave in ("tab", "hide", "another page builds"):
+        enable(page)
+        if leave == "tab":
+            page.get_by_role("tab", name="Problems").click()
+        elif leave == "hide":
+            page.get_by_role("button", name="Hide details").click()
+        else:
+            jiwy.epg.generate()
+            page.get_by_role("tab", name="Build ").filter(has_text=re.compile("Build .")).wait_for()
+            jiwy.epg.post("cancel")
+        page.get_by_role("button", name=re.compile("^Stop( robot)?$")).click()
+        page.get_by_role("tab", name="Live ○ disabled").click()
+        assert page.get_by_role("button", name="Stop robot").count() == 0, "the tab has its own button"
+    assert violations(page) == []
+
+
 def test_an_actuator_moves_while_its_button_is_held(page: Any) -> None:
     button = page.get_by_role("button", name="Move pwm_pan forwards")
     before = page.locator(".live-signals .value").first.inner_text()

@@ -116,7 +116,8 @@ TEST(parameters_change_all_or_not_at_all)
     bench_start(true);
     check_answer("set PID\\kp=0.1 PID\\tau=1\n", "error set there is no parameter 'PID\\tau'\r\n");
     check_answer("set PID\\kp=0.1 p2=inf\n", "error set this is not a number: 'inf'\r\n");
-    check_answer("set PID\\kp=0.1 pb=1.5\n", "error set this number is outside of the limits: '1.5'\r\n");
+    check_answer("set PID\\kp=0.1 pb=1.5\n", "error set this number is more than the maximum 1: '1.5'\r\n");
+    check_answer("set pb=-0.5\n", "error set this number is less than the minimum 0: '-0.5'\r\n");
     check_answer("set PID\\kp\n", "error set this is not a number: ''\r\n");
     check_answer("set\n", "error set use <parameter>=<number>, 1 to 8 times\r\n");
     check_answer("set p2=1 p3=1 p4=1 p5=1 p6=1 p7=1 p8=1 p9=1 pa=1\n",
