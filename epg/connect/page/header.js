@@ -14,7 +14,7 @@ import { simulate } from "./simulation.js";
 import { backToSystem } from "./system.js";
 import { attempt, openTab } from "./ui.js";
 
-const STOP = { build: "Cancel", simulation: "Stop", program: "Stop", flash: "Cancel", comparison: "Cancel" };
+const STOP = { build: "Cancel", simulation: "Stop", program: "End program", flash: "Cancel", comparison: "Cancel" };
 
 /** @param {State} state */
 export function header(state) {

@@ -11,7 +11,7 @@ import { colour, drawPlots } from "./plots.js";
 import { held, repeated } from "./press.js";
 import { recordingPart } from "./recording.js";
 import { saveFrom, savePng } from "./save.js";
-import { ask, askAlone, current } from "./server.js";
+import { ask, askRepeatedly, current } from "./server.js";
 import { timingPart } from "./timing.js";
 import { attempt, draw, say, ui } from "./ui.js";
 
@@ -29,7 +29,7 @@ export const liveTitle = ({ live: { target } }) =>
 
 const isEnabled = (target) => target.state.enabled === "1";
 
-const move = askAlone("move");
+const move = askRepeatedly("move", 1);
 
 async function request(action, body) {
   const answer = await ask(action, body);
@@ -49,7 +49,6 @@ export function livePanel(state) {
     problemPart(refused),
     signalsPart(target),
     h("div.plots", { key: "plots", keep: true, shown: (place) => drawPlotsNow(place, target) }),
-    savePart(target),
     h(
       "div.live-columns",
       { key: "columns" },
@@ -58,6 +57,7 @@ export function livePanel(state) {
       actuatorsPart(target),
       linesPart(),
     ),
+    savePart(target),
     recordingPart(target, ported, command),
     comparisonPart(state, ported),
     timingPart(target),
@@ -136,7 +136,7 @@ function headPart(target) {
       live.dropped > 0 && h("span.hint", ` ${live.dropped} rows dropped`),
     ),
     h(
-      "button",
+      "button.hold",
       { key: "enable", disabled: enabled || !target.matches, ...held(() => request("enable", { page }), HOLD) },
       "Enable (hold)",
     ),
@@ -296,7 +296,7 @@ const parametersPart = ({ parameters, matches }) =>
   parameters.length > 0 &&
   h(
     "section",
-    { key: "parameters" },
+    { key: "parameters", class: "live-parameters" },
     h("h3", "Parameters"),
     parameters.map((each) => {
       const changed = each.value !== each.generated;
@@ -384,8 +384,8 @@ const actuatorsPart = (target) =>
 const linesPart = () =>
   h(
     "section",
-    { key: "lines" },
+    { key: "lines", class: "live-console" },
     h("h3", "Console"),
-    h("pre.log", live.lines.join("\n")),
+    h("div.log-end", { role: "log", "aria-label": "Console", tabindex: "0" }, h("pre.log", live.lines.join("\n"))),
     field("live-command", "Command", "", "", command),
   );

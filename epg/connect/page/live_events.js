@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The events of a running target: points for the plots, lines that it tells, and numbers that keep it enabled.
 
-import { askAlone, jsonLines } from "./server.js";
+import { askRepeatedly, jsonLines } from "./server.js";
 
 export const WINDOW = 10; // seconds that are kept for the plots
 
@@ -18,7 +18,7 @@ export const live = {
 
 let reading = false;
 
-const respond = askAlone("respond");
+const respond = askRepeatedly("respond", 3);
 
 // Reads the events until the connection with the target ends. Calls `changed` after each.
 export async function followTarget(signals, changed) {

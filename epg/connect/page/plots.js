@@ -49,10 +49,16 @@ function bands(place, unit, signals, indices) {
     ["", ", least"].map((end) => ({ label: `${signals[index].name}${end}`, stroke: colour(index) })),
   );
   return newPlot(place, unit, series, {
-    scales: { x: { time: false, range: (_, min, max) => [Math.max(min, max - WINDOW), Math.max(max, min + 1)] } },
+    scales: {
+      x: { time: false, range: (_, min, max) => [Math.max(min, max - WINDOW), Math.max(max, min + 1)] },
+      y: { range: rangeOf },
+    },
     bands: indices.map((index, place) => ({ series: [1 + 2 * place, 2 + 2 * place], fill: `${colour(index)}40` })),
   });
 }
+
+// The range of an axis: a little more than the values. uPlot itself shows values that are all 0 on an axis from 0 to 100.
+const rangeOf = (_, min, max) => (min === max ? [(min ?? 0) - 1, (max ?? 0) + 1] : uPlot.rangeNum(min, max, 0.1, true));
 
 // A plot of values of one unit over the time. `series` and `more` are options of uPlot.
 export function newPlot(place, unit, series, more) {
@@ -64,7 +70,7 @@ export function newPlot(place, unit, series, more) {
     height: HEIGHT,
     legend: { show: false },
     cursor: { show: false },
-    scales: { x: { time: false } },
+    scales: { x: { time: false }, y: { range: rangeOf } },
     axes: [axis, { ...axis, label: unit, labelSize: unit ? 20 : 0, size: 60 }],
     series: [{}, ...series.map((each) => ({ width: 1.5, points: { show: false }, ...each }))],
     ...more,

@@ -120,15 +120,15 @@ export async function ask(action, body = {}) {
   }
 }
 
-// A function that does an action as `ask` does, but not while its last one has no answer. Actions that are repeated then do
-// not queue up in a server that was stopped for a moment: it would do them late.
-export function askAlone(action) {
-  let waits = false;
+// A function that does an action as `ask` does, but not while `most` earlier ones have no answer. Actions that are repeated
+// then leave connections free for others, and do not queue up for a server that stands still: it would do them late.
+export function askRepeatedly(action, most) {
+  let waiting = 0;
   return async (body) => {
-    if (waits) return;
-    waits = true;
+    if (waiting === most) return;
+    waiting++;
     await ask(action, body);
-    waits = false;
+    waiting--;
   };
 }
 
