@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.connect.browser.conftest import NAMES
 from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js, skip_if_missing, tool, unicorn
 from tests.platforms.stm32.images import PARTS
 
@@ -38,6 +39,7 @@ SMALLEST = {
     "pico_ping_pong": ["--pings", "5", "--flat", "20", "--platforms", "1", "--combinations", "1"],
     "network_situations": ["--only", "4", "--seconds", "3", "--systems", "0"],
     "xrce_round_trip": ["--count", "5"],
+    "live_stop": ["--count", "3"],
     "ping_pong": ["--pings", "5", "--flat", "20"],
 }
 STM32 = ("cmsis_device_h7", *PARTS)
@@ -61,7 +63,11 @@ def test_it_runs_and_prints_what_the_page_shows(program: str) -> None:
     """The programs write the page: it has the same tables in the same order."""
     if program == "runtime" and shutil.which("valgrind") is None:
         pytest.skip("valgrind is not installed: apt install valgrind")
-    if program in ("configure", "scaling", "system") and shutil.which("cmake") is None:
+    if program == "live_stop":
+        pytest.importorskip("playwright", reason="playwright is not installed: pip install playwright")
+        if not any(map(shutil.which, NAMES)):
+            pytest.skip("Chromium is not installed: apt install chromium")
+    if program in ("configure", "scaling", "system", "live_stop") and shutil.which("cmake") is None:
         pytest.skip("cmake is not installed: apt install cmake")
     if program.startswith("pico") or program in ("setpoint_latency", "teleoperation"):
         skip_if_missing(pico_sdk, arm_gcc, node, rp2040js, unicorn, lambda: tool("freertos_kernel"))

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from epg.live.client import Client, Refused
+from epg.live.port import Port
 from tests.xrce_agent import Agent
 
 from .board import Board
@@ -116,6 +118,25 @@ def test_a_timeout_that_disables_stays_until_somebody_enables(disabling_robot: P
         board.enable(True)
         agent.wait_until(lambda: board.diagnostics().state == "enabled")
         assert board.stop() == ""
+
+
+def test_a_robot_that_ros_has_enabled_stays_so_beside_a_program(
+    spoken_robot: Path, agent: Agent, tmp_path: Path
+) -> None:
+    """A program of `epg live` opens and closes the console; it cannot take the enabling over."""
+    port = tmp_path / "port"
+    with Board(spoken_robot, agent, "--console-pty", str(port)) as board:
+        board.running()
+        for on, state in ((False, "disabled"), (True, "enabled")):
+            board.enable(on)
+            agent.wait_until(lambda state=state: board.diagnostics().state == state)
+        with Port(port) as opened:
+            client = Client(opened)
+            with pytest.raises(Refused, match="enabled already, without a lease"):
+                client.command("enable leased")
+            client.stop()
+        time.sleep(1)
+        assert board.diagnostics().state == "enabled"
 
 
 def test_the_enable_topic(robot: Path, agent: Agent) -> None:
