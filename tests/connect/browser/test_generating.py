@@ -81,7 +81,7 @@ def test_generates_shows_errors_and_cancels(jiwy: Project, open_page: Open) -> N
     page.get_by_role("dialog").get_by_role("button", name="Run", exact=True).click()
     panel.get_by_text("jiwy_host runs in real time.").wait_for()
     assert panel.get_by_role("button", name="Run jiwy_host in real time").is_disabled()
-    page.get_by_role("button", name="Stop", exact=True).click()
+    page.get_by_role("button", name="End program", exact=True).click()
     panel.get_by_text("jiwy_host was stopped.").wait_for(timeout=PATIENT)
     panel.get_by_text("Output,").click()
     panel.get_by_label("Output").get_by_text("interrupted").wait_for()
