@@ -110,7 +110,7 @@ def measure(
 
 def row(name: str, load: str, times: list[float], reference: list[float]) -> list[str]:
     ordered = sorted(1000 * time for time in times)
-    numbers = [ordered[0], statistics.median(ordered), ordered[int(0.99 * len(ordered))], ordered[-1]]
+    numbers = [ordered[0], statistics.median(ordered), ordered[-(-99 * len(ordered) // 100) - 1], ordered[-1]]
     ratio = statistics.median(times) / statistics.median(reference)
     return [name, load, str(len(times)), *(f"{number:.1f}" for number in numbers), f"{ratio:.1f} x"]
 

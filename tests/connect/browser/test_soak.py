@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -37,6 +38,26 @@ def robot(tmp_path: Path) -> Iterator[Robot]:
         yield found
 
 
+class Computer:
+    """How late other programs let an idle thread run: a task of the page takes that much longer, too."""
+
+    def __init__(self) -> None:
+        self.late = 0.0
+        self._over = threading.Event()
+        threading.Thread(target=self._look, daemon=True).start()
+
+    def _look(self) -> None:
+        while not self._over.is_set():
+            due = time.monotonic() + 0.01
+            time.sleep(0.01)
+            self.late = max(self.late, time.monotonic() - due)
+
+    def end(self) -> float:
+        """Returns the largest delay in milliseconds."""
+        self._over.set()
+        return 1000 * self.late
+
+
 def resident(process: int) -> int:
     """The memory of a process, in bytes."""
     found = re.search(r"^VmRSS:\s+(\d+) kB", Path(f"/proc/{process}/status").read_text(), re.MULTILINE)
@@ -68,19 +89,21 @@ def test_20_signals_in_every_cycle(robot: Robot, open_page: Open, seconds: int) 
         page.wait_for_timeout(1000 * WARM)
         before, server = heap(), resident(epg.process)
         begin = time.monotonic()
+        computer = Computer()
         page.evaluate(TASKS)
         page.wait_for_timeout(1000 * seconds)
-        longest = page.evaluate("longest")
+        longest, late = page.evaluate("longest"), computer.end()
         after, grown = heap(), resident(epg.process) - server
         kept = min(ROW * 1000 * (time.monotonic() - begin), HISTORY)
         newest = page.evaluate("(async () => (await import(new URL('live_events.js', location))).live.times.at(-1))()")
         summary = (
-            f"heap {before / MIB:.2f} MiB, then {after / MIB:.2f} MiB; longest task {longest:.0f} ms; server "
+            f"heap {before / MIB:.2f} MiB, then {after / MIB:.2f} MiB; longest task {longest:.0f} ms, while "
+            f"an idle thread was up to {late:.0f} ms late; server "
             f"{server / MIB:.1f} MiB, then {(server + grown) / MIB:.1f} MiB, of which {kept / MIB:.1f} MiB are new rows"
         )
         print(summary)
         assert newest > WARM + seconds - 2, "the plots move"
         assert page.get_by_text(re.compile("rows dropped")).count() == 0
         assert after < before + MIB, summary
-        assert longest < 100, summary
+        assert longest < 100 + late, summary
         assert grown < 1.5 * kept + 4 * MIB, summary
