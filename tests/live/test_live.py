@@ -7,6 +7,7 @@ import csv
 import json
 import os
 import pty
+import re
 import select
 import signal
 import subprocess
@@ -284,3 +285,15 @@ def test_a_fault_is_said_in_words(target: Target) -> None:
         "Fault 'stall' of guard_tilt: a driven motor gave no counts: the encoder is dead, or the motor" in done.stderr
     )
     assert "hint: Look at the cables and the supply of motor and encoder, free the axis" in done.stderr
+
+
+def test_the_program_of_the_page(target: Target) -> None:
+    page = (ROOT / "docs/live-protocol.md").read_text(encoding="utf-8")
+    (program,) = re.findall(r"^```python\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+    program = program.replace("/dev/ttyACM0", str(target.port))
+    done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    first, *rows = done.stdout.splitlines()
+    assert first == "jiwy pan_subscriber tilt_subscriber"
+    ticks = [float(row.split()[0]) for row in rows]
+    assert len(rows) > 10 and ticks == sorted(set(ticks))

@@ -176,9 +176,8 @@ def test_the_trace_of_a_host_program_is_replayed(programs: Path, tmp_path: Path)
 
 
 def test_the_example_of_the_page(programs: Path, tmp_path: Path) -> None:
-    page = (ROOT / "docs/live.md").read_text()
-    section = page.partition("\n## Replay\n")[2].partition("\n## ")[0]
-    commands, output = re.findall(r"^```(?:sh)?\n(.*?)^```$", section, re.MULTILINE | re.DOTALL)[:2]
+    page = (ROOT / "docs/replay.md").read_text()
+    commands, output = re.findall(r"^```(?:sh)?\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)[:2]
     start, *lines = commands.splitlines()
     assert start.split()[:2] == ["build/jiwy/jiwy_host", "--realtime"]
     with running(programs / "jiwy_host", tmp_path) as target:
