@@ -92,6 +92,7 @@ class Emitter:
         for middleware in app.communication.middlewares:
             headers.update(middleware.headers)
         service = service_of(app, self._service_macro, self.macros.symbols)
+        model = model_hash(app.model, app.parameters)
         context: dict[str, Any] = {
             "app": app,
             "prefix": self.prefix,
@@ -121,7 +122,8 @@ class Emitter:
             "console_transport": self._transport(app.communication.console_transport),
             "middleware_code": self._middleware_code(service.middleware),
             "console_code": self._middleware_code(service.console),
-            "model_hash": model_hash(app.model, app.parameters),
+            "model_hash": model,
+            "model_number": Code(f"0x{model}u"),
             "rounded": sorted(rounded_functions(app.model)),
             "version": __version__,
             "hash": LITERAL,

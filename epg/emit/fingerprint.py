@@ -50,16 +50,17 @@ def application_hash(app: Application, generated: Mapping[str, str]) -> str:
     return digest.hexdigest()[:DIGITS]
 
 
-def model_hash(model: Model, parameters: Mapping[str, float]) -> Code:
-    """A C literal that identifies a model and the generated values of its parameters.
+def model_hash(model: Model, parameters: Mapping[str, float]) -> str:
+    """A hexadecimal number that identifies a model and the generated values of its parameters.
 
-    The firmware keeps it with stored parameters, so that parameters of another model are not loaded.
+    The firmware keeps it with stored parameters, so that parameters of another model are not loaded.  A recording has
+    it, too, so that a replay uses the same model.
     """
     digest = hashlib.sha256()
     values = [(p.name, repr(parameters.get(p.name, p.value))) for p in model.parameters]
     _add(digest, model.name, json.dumps(values).encode())
     _add_files(digest, "model", model.directory, model.files)
-    return Code(f"0x{digest.hexdigest()[:DIGITS]}u")
+    return digest.hexdigest()[:DIGITS]
 
 
 def _add_files(digest: hashlib._Hash, label: str, folder: Path, files: Iterable[Path]) -> None:

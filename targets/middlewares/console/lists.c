@@ -56,17 +56,6 @@ static const char *stored_name(const epg_parameters_t *parameters)
     return "nothing";
 }
 
-/** Appends " model=" with 16 hexadecimal digits. */
-static void model_word(epg_console_session_t *session, uint64_t model)
-{
-    char text[17];
-    for (unsigned int i = 0; i < 16U; i++) {
-        text[i] = "0123456789abcdef"[model >> (60U - 4U * i) & 15U];
-    }
-    text[16] = '\0';
-    epg_console_word(&session->output, "model", text);
-}
-
 void epg_console_version(epg_console_session_t *session, const epg_console_command_t *command)
 {
     const epg_target_t *target = session->target;
@@ -76,7 +65,7 @@ void epg_console_version(epg_console_session_t *session, const epg_console_comma
     epg_console_node(session);
     epg_console_word(&session->output, "epg", target->version);
     epg_console_word(&session->output, "hash", target->hash);
-    model_word(session, target->model);
+    epg_console_word(&session->output, "model", target->model);
     epg_console_key(&session->output, "period");
     epg_console_seconds(&session->output, target->application->period_ns);
     if (target->application->parameters != NULL) {

@@ -150,7 +150,7 @@ void bench_start(bool enabled)
                    .publications = publications,
                    .version = "1.2.3",
                    .hash = "0123456789abcdef",
-                   .model = UINT64_C(0xfedcba9876543210),
+                   .model = "fedcba9876543210",
                    .middleware = &epg_console,
                    .options = &bench.options,
                    .store = &bench.store,

@@ -355,10 +355,12 @@ static bool communication_changes(size_t index, double new_value)
 /** A stream tells changes of the program and of the communication side alike, with the cycle in which each acted. */
 TEST(a_stream_tells_changes_of_the_program)
 {
+    static epg_capture_t capture;
     static epg_telemetry_t telemetry;
     static double memory[64];
     telemetry = (epg_telemetry_t){0};
     begin_with_parameters(true);
+    fake.application.capture = &capture;
     parameters.log.acted = parameter_acted;
     fake.application.telemetry = &telemetry;
     fake_cycles(4);

@@ -33,5 +33,5 @@ void epg_host_print_interface(const epg_host_target_t *host)
     for (size_t i = 0; i < host->function_count; i++) {
         printf("function,%s\n", host->functions[i]);
     }
-    printf("model,%016" PRIx64 "\nperiod,%" PRIu64 "\n", target->model, target->application->period_ns);
+    printf("model,%s\nperiod,%" PRIu64 "\n", target->model, target->application->period_ns);
 }

@@ -132,7 +132,7 @@ typedef struct epg_application {
 
     epg_parameters_t *parameters; /**< parameters that can be changed while the model runs; NULL: none */
     epg_capture_t *capture;       /**< recording of signals; NULL: none */
-    epg_telemetry_t *telemetry;   /**< stream of signals; NULL: none */
+    epg_telemetry_t *telemetry;   /**< stream of signals; NULL: none.  Needs a capture, whose memory it shares */
     epg_jog_t *jog;               /**< actuators that can be moved by hand; NULL: none */
 } epg_application_t;
 
@@ -218,11 +218,11 @@ struct epg_control {
     epg_status_t observer_buffers[4];
     double loop[EPG_LOOP_VALUES];     /**< for streams; control side */
     double replay[EPG_REPLAY_VALUES]; /**< for streams; control side */
-    uint32_t since_start; /**< number of the newest cycle, from 1 for the one that initialised the model; saturates */
-    uint64_t loop_total;  /**< computation time of all cycles up to the last one with a stream, ns */
-    atomic_bool observed; /**< epg_control_observe() has been called */
-    atomic_bool reset;    /**< epg_control_reset() was called; the next cycle clears it */
-    epg_access_t *_Atomic accesses; /**< the first access of the user's program; NULL: none is used */
+    uint64_t first_cycle;             /**< number of cycles before the one that initialised the model */
+    uint64_t loop_total;              /**< computation time of all cycles up to the last one with a stream, ns */
+    atomic_bool observed;             /**< epg_control_observe() has been called */
+    atomic_bool reset;                /**< epg_control_reset() was called; the next cycle clears it */
+    epg_access_t *_Atomic accesses;   /**< the first access of the user's program; NULL: none is used */
 };
 
 #define EPG_STATUS_MEMBER(member)                                                                                      \

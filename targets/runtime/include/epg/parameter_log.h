@@ -22,7 +22,7 @@ struct epg_parameters;
 typedef struct epg_parameter_log {
     uint32_t
         *acted;    /**< for each parameter, the cycle of its change that is not yet told; 0: none.  NULL: no streams */
-    uint32_t now;  /**< number of the present cycle; 0: changes are not told */
+    uint32_t now;  /**< number of the present cycle while a stream runs; 0: changes are not told */
     size_t untold; /**< number of changes that are not yet told */
     size_t next;   /**< the parameter at which the next search begins */
     bool lost;     /**< another change replaced a change that was not yet told */

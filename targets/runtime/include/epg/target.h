@@ -100,9 +100,9 @@ typedef struct epg_target {
     size_t publication_count;
     const epg_topic_t *publications;
 
-    const char *version;                     /**< version of the EPG that generated this target */
-    const char *hash;                        /**< hash of everything it was generated from: 16 hexadecimal digits */
-    uint64_t model;                          /**< identifies the model and the generated values of its parameters */
+    const char *version; /**< version of the EPG that generated this target */
+    const char *hash;    /**< hash of everything it was generated from: 16 hexadecimal digits */
+    const char *model;   /**< hash of the model and of the generated values of its parameters: as long */
     const struct epg_middleware *middleware; /**< NULL: none is configured */
     const void *options;                     /**< options of the middleware; its header declares their type */
     const struct epg_middleware *console;    /**< console beside the middleware, on another stream; NULL: none */

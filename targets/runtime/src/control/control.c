@@ -6,6 +6,7 @@
 #include "epg/control.h"
 
 #include "epg/port.h"
+#include "row.h"
 #include "setpoint.h"
 
 enum { ENABLE = 1, LEASED = 2, REQUEST_BITS = 3 }; /* of a request */
@@ -168,7 +169,7 @@ static bool run_model(epg_control_t *control)
         control->initialise = false;
         control->model_valid = true;
         control->until_step = 0;
-        control->since_start = 1;
+        control->first_cycle = control->statistics.cycles;
         if (application->parameters != NULL && control->enabled) {
             epg_parameter_log_restart(application->parameters);
         }
@@ -285,52 +286,15 @@ static void count_silence(epg_control_t *control)
     }
 }
 
-/** Sets the values about the loop before the row of a stream is taken. */
-static void set_loop_values(epg_control_t *control, uint64_t tick_ns)
+/** Records the cycle, if a recording or a stream runs.  Streams use a part of the recordings' memory. */
+static void record(epg_control_t *control, const epg_application_t *application, uint64_t tick_ns)
 {
-    const uint64_t total = control->statistics.computation_total;
-    const uint64_t computation = control->application->telemetry->number == 0U ? 0U : total - control->loop_total;
-    const uint64_t lateness = control->sampled_ns > tick_ns ? control->sampled_ns - tick_ns : 0U;
-    control->loop[EPG_LOOP_LATENESS] = (double)saturated(lateness);
-    control->loop[EPG_LOOP_COMPUTATION] = (double)saturated(computation);
-    control->loop_total = total;
-}
-
-/** Counts the cycles since the model was initialised, and lets the log note changes of parameters in this cycle. */
-static void count_since_start(epg_control_t *control, const epg_application_t *application)
-{
-    if (control->since_start < UINT32_MAX) {
-        control->since_start++;
+    if (epg_handover_there(&application->capture->handover)) {
+        epg_capture_cycle(application->capture, tick_ns, control->fault != EPG_FAULT_NONE);
     }
-    if (application->parameters != NULL) {
-        const bool told =
-            control->enabled && application->telemetry != NULL && epg_handover_there(&application->telemetry->handover);
-        application->parameters->log.now = told ? control->since_start : 0U;
+    if (application->telemetry != NULL && epg_handover_there(&application->telemetry->handover)) {
+        epg_control_put_row(control, tick_ns);
     }
-}
-
-/** Sets the values for a replay before the row of a stream is taken. */
-static void set_replay_values(epg_control_t *control)
-{
-    epg_parameters_t *parameters = control->application->parameters;
-    epg_parameter_told_t told = {0};
-    size_t untold = 0;
-    if (parameters != NULL) {
-        if (control->application->telemetry->number == 0U) { /* the log has changes from the time before the stream */
-            const bool right = control->enabled && control->since_start == 1U;
-            if (!right) {
-                epg_parameter_log_clear(parameters);
-            }
-            parameters->log.lost = false;
-        }
-        told = epg_parameter_log_tell(parameters);
-        untold = parameters->log.untold;
-    }
-    control->replay[EPG_REPLAY_CYCLE] = control->enabled ? (double)control->since_start : 0.0;
-    control->replay[EPG_REPLAY_PARAMETER] = told.lost ? -1.0 : told.any ? (double)(told.index + 1U) : 0.0;
-    control->replay[EPG_REPLAY_VALUE] = told.value;
-    control->replay[EPG_REPLAY_ACTED] = (double)told.acted;
-    control->replay[EPG_REPLAY_UNTOLD] = (double)untold;
 }
 
 static void publish_status(epg_control_t *control)
@@ -351,7 +315,6 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
     application->sample();
     count_lateness(control, tick_ns, begin_ns);
     control->time_ns = tick_ns;
-    count_since_start(control, application);
     command(control, application, begin_ns);
     application->read();
     if (application->parameters != NULL && epg_handover_there(&application->parameters->handover)) {
@@ -381,16 +344,8 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
     }
     control->statistics.setpoints_dropped = newest(&control->dropped);
     reach(control, stepped ? EPG_ACCESS_STEPPED : EPG_ACCESS_RESTED);
-    if (application->capture != NULL && epg_handover_there(&application->capture->handover)) {
-        epg_capture_cycle(application->capture, tick_ns, control->fault != EPG_FAULT_NONE);
-    }
-    if (application->telemetry != NULL && epg_handover_there(&application->telemetry->handover)) {
-        set_loop_values(control, tick_ns);
-        set_replay_values(control);
-        if (application->jog != NULL) {
-            epg_jog_observe(application->jog);
-        }
-        epg_telemetry_put(application->telemetry, tick_ns);
+    if (application->capture != NULL) {
+        record(control, application, tick_ns);
     }
 
     const uint64_t next_ns = tick_ns + application->period_ns;
