@@ -40,7 +40,8 @@ static void run_cycles(unsigned int count)
 static void *control_main(void *argument)
 {
     run_cycles(CYCLES);
-    for (unsigned int i = 0; i < MOST && !atomic_load(&seen); i++) { /* this computer has not run the program's thread */
+    /* A computer with other work may not have run the program's thread yet. */
+    for (unsigned int i = 0; i < MOST && !atomic_load(&seen); i++) {
         run_cycles(1);
     }
     atomic_store(&ended, true);
