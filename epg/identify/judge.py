@@ -85,7 +85,8 @@ def judge_fit(fit: Fit, samples: Samples, file: str, diagnostics: Diagnostics) -
             "time constant": relative(fit.time_constant),
             "friction": 2.0 * fit.friction.error / largest,
         }
-        worst = max(errors, key=lambda name: errors[name])
+        # Beyond 100 % the errors depend on the rounding of numpy. Then, the first of these values counts as the worst.
+        worst = max(errors, key=lambda name: min(errors[name], 1.0))
         if errors[worst] > MOST_ERROR:
             of = "of the largest duty" if worst == "friction" else "of its value"
             by = f"{100.0 * errors[worst]:.0f} %" if errors[worst] < 1.0 else "more than 100 %"
