@@ -28,7 +28,8 @@ SOURCE = ROOT / "targets" / "platforms" / "mcu" / "one_core" / "src" / "control.
 def control_stack(elf: Path) -> tuple[int, list[str]]:
     """The bound of the control cycle's stack, and the calls that lead to it."""
     known = functions(elf)
-    jog = [name for name in known if re.search(r"_jog_duty(_applied)?$|_encoder_\w+_(count|position)$", name)]
+    jog = [name for name in known if re.search(r"_jog_duty$|_encoder_\w+_(count|position)$", name)]
+    observed = [name for name in known if re.search(r"_jog_duty_applied$|_encoder_\w+_position$", name)]
     dynamic = [name for name in known if "RELbot_Control16CalculateDynamicEv" in name]
     pointers = {
         "epg_one_core_on_tick": ["make_safe", *(n for n in ("epg_family_service_pend",) if n in known)],
@@ -36,7 +37,7 @@ def control_stack(elf: Path) -> tuple[int, list[str]]:
         "epg_parameters_restore": ["set_parameters"],
         "epg_parameters_apply": ["set_parameters"],
         "epg_jog_cycle": jog,
-        "epg_jog_observe": jog,
+        "epg_jog_observe": observed,
     }
     steps = [name for name in known if "RungeKutta44StepEv" in name]
     assert bool(steps) == bool(dynamic)

@@ -11,10 +11,9 @@
 #include "epg/parameters.h"
 #include "epg/telemetry.h"
 
-/** Returns a time in ns as a double, at most 4.29 s. */
-static double nanoseconds(uint64_t value)
+static uint32_t saturated(uint64_t value)
 {
-    return (double)(value < UINT32_MAX ? (uint32_t)value : UINT32_MAX);
+    return value < UINT32_MAX ? (uint32_t)value : UINT32_MAX;
 }
 
 /** Sets the values about the loop before the row of a stream is taken. */
@@ -23,8 +22,8 @@ static void set_loop_values(epg_control_t *control, uint64_t tick_ns)
     const uint64_t total = control->statistics.computation_total;
     const uint64_t computation = control->application->telemetry->number == 0U ? 0U : total - control->loop_total;
     const uint64_t lateness = control->sampled_ns > tick_ns ? control->sampled_ns - tick_ns : 0U;
-    control->loop[EPG_LOOP_LATENESS] = nanoseconds(lateness);
-    control->loop[EPG_LOOP_COMPUTATION] = nanoseconds(computation);
+    control->loop[EPG_LOOP_LATENESS] = (double)saturated(lateness);
+    control->loop[EPG_LOOP_COMPUTATION] = (double)saturated(computation);
     control->loop_total = total;
 }
 
@@ -32,7 +31,7 @@ static void set_loop_values(epg_control_t *control, uint64_t tick_ns)
 static void set_replay_values(epg_control_t *control)
 {
     epg_parameters_t *parameters = control->application->parameters;
-    const uint64_t cycle = control->enabled ? control->statistics.cycles - control->first_cycle + 1U : 0U;
+    const uint32_t cycle = control->enabled ? saturated(control->statistics.cycles - control->first_cycle + 1U) : 0U;
     epg_parameter_told_t told = {0};
     size_t untold = 0;
     if (parameters != NULL) {
@@ -44,7 +43,7 @@ static void set_replay_values(epg_control_t *control)
         }
         told = epg_parameter_log_tell(parameters);
         untold = parameters->log.untold;
-        parameters->log.now = cycle > 0U ? (uint32_t)cycle + 1U : 0U; /* of changes in the next cycle */
+        parameters->log.now = cycle > 0U ? cycle + 1U : 0U; /* of changes in the next cycle */
     }
     control->replay[EPG_REPLAY_CYCLE] = (double)cycle;
     control->replay[EPG_REPLAY_PARAMETER] = told.lost ? -1.0 : told.any ? (double)(told.index + 1U) : 0.0;
