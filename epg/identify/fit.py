@@ -7,7 +7,7 @@ the motor does not begin at rest.
 
 The problem has at most six unknowns and is smooth, so the Levenberg-Marquardt method with numpy solves it.  Unknowns
 are clipped to their bounds.  An unknown at its bound is left out while its gradient points outwards.  The search starts
-at the best point of a grid of time constants and frictions.  At each point, a linear regression gives position and gain.
+at the best point of a grid of time constants and frictions, where a linear regression gives position and gain.
 
 The standard errors are those of least squares, times the square root of the residual's correlation time in points.
 This time is at least ``_ROUNDED`` if the residual is that of rounding: the rounding errors of a uniform movement repeat
