@@ -85,7 +85,7 @@ def samples_of(time: Any, position: Any, duty: Any) -> Samples:
     resolution = _resolution(real)
     fractions = np.abs(real / resolution - np.round(real / resolution)) if len(real) else real
     stops = _stops(position, duty, resolution)
-    jumps = _jumps(steps, resolution)
+    jumps = _jumps(steps / np.maximum(np.diff(time) / period, 1.0), resolution)
     gaps = np.nonzero((np.diff(time) > _GAP * period) & (np.diff(duty) != 0.0))[0] + 1
     edges = sorted({0, len(time), *jumps, *gaps.tolist(), *(edge for stop in stops for edge in stop)})
     parts = [(a, b) for a, b in pairwise(edges) if not any(begin <= a < end for begin, end in stops)]
@@ -167,17 +167,21 @@ def _worth(position: Any) -> float:
     return float(np.abs(np.diff(position)).sum())
 
 
-def _jumps(steps: Any, resolution: float) -> set[int]:
-    """The rows before which the position jumps: much farther than in the periods before and after."""
+def _jumps(paces: Any, resolution: float) -> set[int]:
+    """The rows before which the position jumps.  ``paces`` are the ways per period from each row to the next one.
+
+    A jump is much faster than the movement before and after.  A motor that moves on while rows are missing does not
+    jump.
+    """
     import numpy as np
 
-    around = np.zeros(len(steps))
+    around = np.zeros(len(paces))
     for shift in (-3, -2, -1, 1, 2, 3):
-        beside = np.roll(steps, shift)
+        beside = np.roll(paces, shift)
         beside[: max(shift, 0)] = 0.0
-        beside[len(steps) + min(shift, 0) :] = 0.0
+        beside[len(paces) + min(shift, 0) :] = 0.0
         around = np.maximum(around, beside)
-    return set((np.nonzero(steps > 10.0 * around + 10.5 * resolution)[0] + 1).tolist())
+    return set((np.nonzero(paces > 10.0 * around + 10.5 * resolution)[0] + 1).tolist())
 
 
 def _stops(position: Any, duty: Any, resolution: float) -> list[tuple[int, int]]:

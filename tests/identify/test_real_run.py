@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import csv
 import json
-import math
 import os
 import re
 import shlex
@@ -19,6 +18,7 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -34,7 +34,8 @@ bootstrap.ensure("plot")
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "identify.md").read_text(encoding="utf-8")
-COUNT = math.pi / 1112
+LONGEST_GAP = 0.005
+"""The longest time in s between two rows of a recording of every cycle."""
 ROBOT = r"""
 parameters:
   'Pan\Motor\k': 0.0215
@@ -107,30 +108,26 @@ class Project:
         assert done.returncode == 0, done.stdout + done.stderr
         return done.stdout
 
-    def jog(self, program: Path, name: str) -> list[tuple[float, float, float]]:
-        """Times since the motor was first driven, duties and positions of the page's recording."""
-        with self.running(program):
-            self.run(f"{page_command('epg live')} --force")
-        recording = self.folder / "pan.csv"
-        with recording.open(encoding="utf-8") as file:
-            rows = [tuple(map(float, row)) for row in csv.reader(file) if row[0] != "time"]
-        shutil.copy(recording, self.folder / name)
-        begin, _, first = next(row for row in rows if row[1] != 0.0)
-        return [(time - begin, duty, position - first) for time, duty, position in rows if time >= begin]
+    def jog(self, program: Path) -> None:
+        """Makes the page's recording.  Repeats it if the computer has stopped the robot: then cycles are missing."""
+        for _ in range(5):
+            with self.running(program):
+                self.run(f"{page_command('epg live')} --force")
+            with (self.folder / "pan.csv").open(encoding="utf-8") as file:
+                times = [float(row[0]) for row in csv.reader(file) if row[0] != "time"]
+            if max(after - before for before, after in pairwise(times)) < LONGEST_GAP:
+                return
+        pytest.fail(f"five robots in turn missed all cycles of {LONGEST_GAP} s: the computer has other work")
+
+    def identified(self, command: str) -> dict[str, float]:
+        found = json.loads(self.run(f"{command} --json"))
+        return {name: each["value"] for name, each in found["values"].items()}
 
 
 def page_command(start: str) -> str:
     """The first command on the page that begins so, as one line."""
     text = PAGE.replace("\\\n", " ")
     return next(line.strip() for line in text.splitlines() if line.strip().startswith(start))
-
-
-def rms(one: list[tuple[float, float, float]], other: list[tuple[float, float, float]]) -> float:
-    """RMS of the difference of two movements at the times that both have."""
-    positions = {round(1000 * time): position for time, _, position in other}
-    both = [(row[2], positions[at]) for row in one if (at := round(1000 * row[0])) in positions]
-    assert len(both) > 1000
-    return math.sqrt(sum((a - b) ** 2 for a, b in both) / len(both))
 
 
 @pytest.fixture(scope="module")
@@ -141,10 +138,9 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Project:
     return Project(tmp_path_factory.mktemp("identify"))
 
 
-def check_values(project: Project, output: str) -> None:
+def check_values(project: Project, values: dict[str, float]) -> None:
     motor = project.true.bindings.motors["duty_pan"]
     gain, time_constant, friction = motor.values(project.true.known())
-    values = {name: each["value"] for name, each in json.loads(output)["values"].items()}
     assert values["gain"] == pytest.approx(gain, rel=0.03)
     assert values["time_constant"] == pytest.approx(time_constant, rel=0.03)
     assert values["friction"] == pytest.approx(friction, abs=0.003)
@@ -152,13 +148,15 @@ def check_values(project: Project, output: str) -> None:
 
 
 def test_the_written_plant_moves_as_the_robot_does(project: Project) -> None:
-    measured = project.jog(project.robot, "robot.csv")
-    guessed = project.jog(project.guessed, "guessed.csv")
-    shutil.copy(project.folder / "robot.csv", project.folder / "pan.csv")
     command = page_command("epg identify")
+    project.jog(project.guessed)
+    guess = project.identified(command)
+    project.jog(project.robot)
     assert "--write" not in command
     before = (project.example / "plant.bindings.yaml").read_text(encoding="utf-8")
-    check_values(project, project.run(f"{command} --json"))
+    robot = project.identified(command)
+    check_values(project, robot)
+    assert guess["gain"] > 1.1 * robot["gain"]
     assert (project.example / "plant.bindings.yaml").read_text(encoding="utf-8") == before
 
     shown = project.run(f"{command} --write")
@@ -173,11 +171,11 @@ def test_the_written_plant_moves_as_the_robot_does(project: Project) -> None:
         assert new[name] == pytest.approx(true[name], rel=0.05)
     assert new[r"Tilt\Motor\k"] == true[r"Tilt\Motor\k"]
 
-    written = project.jog(project.build(), "written.csv")
-    assert rms(guessed, measured) > 30 * COUNT
-    assert rms(written, measured) < 2 * COUNT
-    print(f"RMS of the guessed plant {rms(guessed, measured) / COUNT:.1f} counts, ", end="")
-    print(f"of the written plant {rms(written, measured) / COUNT:.2f} counts")
+    project.jog(project.build())
+    written = project.identified(command)
+    assert written["gain"] == pytest.approx(robot["gain"], rel=0.01)
+    assert written["time_constant"] == pytest.approx(robot["time_constant"], rel=0.02)
+    assert written["friction"] == pytest.approx(robot["friction"], abs=0.002)
 
 
 def test_a_step_while_the_robot_is_enabled_gives_the_same_values(project: Project) -> None:
@@ -200,12 +198,12 @@ def test_a_step_while_the_robot_is_enabled_gives_the_same_values(project: Projec
             sink.close()
         finally:
             client.stop()
-    check_values(project, project.run(page_command("epg identify").replace("pan.csv", "step.csv") + " --json"))
+    check_values(project, project.identified(page_command("epg identify").replace("pan.csv", "step.csv")))
 
 
 def test_the_page_shows_what_is_printed(project: Project) -> None:
     """The page's robot has the parameters of the project's plant.  Numbers of a run in real time differ a little."""
-    project.jog(project.guessed, "page.csv")
+    project.jog(project.guessed)
     output = project.run(page_command("epg identify"))
     block = re.search(r"```\n(\d+\.\d+ s to .*?)```", PAGE, re.DOTALL)
     assert block is not None

@@ -34,7 +34,8 @@ def test_the_next_cycle(folder: Path, delay: int) -> None:
     assert len(steps) > 0.8 * STEPS, "best effort, and of two that came within a cycle the newer acts"
     assert {step.cycles for step in steps} <= {0, 1}
     soonest = 1e-6 * delay
-    assert sum(step.whole >= soonest for step in steps) == len(steps)
+    early = [step for step in steps if step.whole < soonest]
+    assert len(early) < len(steps) // 10, "a cycle that the computer starts late has less than the whole delay left"
     on_time = [step for step in steps if step.after_arrival <= PERIOD + soonest + 0.0005]
     assert len(on_time) > len(steps) // 2, "the rest: what else the machine did"
     waited = sorted(step.in_cycle for step in steps)[len(steps) // 2]
