@@ -163,10 +163,17 @@ static const handler_t *find_handler(const char *name)
 /** Returns true for a line that must act at once, even during another answer: setpoints, enable, disable. */
 static bool urgent(void)
 {
-    const char *line = session.input.line;
-    const char *word = line + strspn(line, " \t");
-    const size_t length = strcspn(word, " \t");
-    return memchr(word, '=', length) != NULL || (length == 6 && memcmp(word, "enable", length) == 0) ||
+    const char *word = session.input.line;
+    while (*word == ' ' || *word == '\t') {
+        word++;
+    }
+    size_t length = 0;
+    while (word[length] != '\0' && word[length] != ' ' && word[length] != '\t') {
+        if (word[length++] == '=') {
+            return true;
+        }
+    }
+    return (length == 6 && memcmp(word, "enable", length) == 0) ||
            (length == 7 && memcmp(word, "disable", length) == 0);
 }
 

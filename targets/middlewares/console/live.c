@@ -311,9 +311,14 @@ static void take_message(epg_console_session_t *session)
     }
 }
 
+static bool is_for_console(char type)
+{
+    return type == EPG_CONSOLE_COMMAND || type == EPG_CONSOLE_STREAM || type == EPG_CONSOLE_RESPONSE ||
+           type == EPG_CONSOLE_KEEP;
+}
+
 void epg_console_take_framed(epg_console_session_t *session, uint8_t byte)
 {
-    static const char types[] = {EPG_CONSOLE_COMMAND, EPG_CONSOLE_STREAM, EPG_CONSOLE_RESPONSE, EPG_CONSOLE_KEEP};
     session->live.byte_ns = session->now_ns;
     if (byte == 0 && !session->live.frame.open) {
         epg_console_input_clear(&session->input);
@@ -321,7 +326,7 @@ void epg_console_take_framed(epg_console_session_t *session, uint8_t byte)
     switch (epg_console_frame_take(&session->live.frame, (uint8_t *)session->input.line, sizeof session->input.line,
                                    byte)) {
     case EPG_CONSOLE_FRAME_MORE:
-        if (session->live.frame.length > 0 && memchr(types, session->input.line[0], sizeof types) == NULL) {
+        if (session->live.frame.length > 0 && !is_for_console(session->input.line[0])) {
             session->live.frame = (epg_console_frame_t){0}; /* noise: text can follow at once */
             epg_console_input_clear(&session->input);
             session->input.no_text = true;

@@ -60,8 +60,9 @@ static bool read_trigger(epg_console_session_t *session, const char *text, epg_c
         request->trigger = EPG_CAPTURE_FAULT;
         return true;
     }
-    const size_t length = strcspn(text, "<>");
-    if (text[length] == '\0' || length >= sizeof name) {
+    const char *sign = strchr(text, '>') != NULL ? strchr(text, '>') : strchr(text, '<');
+    const size_t length = sign != NULL ? (size_t)(sign - text) : sizeof name;
+    if (length >= sizeof name) {
         epg_console_error(session, "capture", "use when=<port>><number>, when=<port><<number> or when=fault", NULL);
         return false;
     }
@@ -72,12 +73,12 @@ static bool read_trigger(epg_console_session_t *session, const char *text, epg_c
         epg_console_error(session, "capture", "there is no port", name);
         return false;
     }
-    if (!epg_console_number(text + length + 1, &request->level)) {
-        epg_console_error(session, "capture", "this is not a number:", text + length + 1);
+    if (!epg_console_number(sign + 1, &request->level)) {
+        epg_console_error(session, "capture", "this is not a number:", sign + 1);
         return false;
     }
     request->watched = session->target->signals[signal].value;
-    request->trigger = text[length] == '>' ? EPG_CAPTURE_RISING : EPG_CAPTURE_FALLING;
+    request->trigger = *sign == '>' ? EPG_CAPTURE_RISING : EPG_CAPTURE_FALLING;
     return true;
 }
 
