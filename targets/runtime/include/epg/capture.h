@@ -69,6 +69,18 @@ typedef struct epg_capture {
 /** Ends a recording that was left when the control loop stopped.  Must be called only while neither side is active. */
 void epg_capture_clear(epg_capture_t *capture);
 
+/* Both sides ------------------------------------------------------------------------------------------------- */
+
+/**
+ * Returns the row at place `index` of the memory: an array of doubles.  The first one holds the bits of the tick (a
+ * 64-bit whole number), the others hold the values.  The rows form a ring, which is overwritten until the trigger.  The
+ * trigger then fixes the last row.
+ */
+static inline double *epg_capture_row_at(const epg_capture_t *capture, size_t index)
+{
+    return &capture->memory[index * (capture->request.columns + 1U)];
+}
+
 /* Control side ----------------------------------------------------------------------------------------------- */
 
 /**

@@ -44,6 +44,12 @@ typedef struct epg_statistics {
     epg_stack_t stacks[EPG_STACKS];
 } epg_statistics_t;
 
+/** The value for a member of 32 bits that saturates. */
+static inline uint32_t epg_statistics_saturated(uint64_t value)
+{
+    return value < UINT32_MAX ? (uint32_t)value : UINT32_MAX;
+}
+
 #ifdef __cplusplus
 }
 #endif

@@ -59,6 +59,23 @@ typedef struct epg_telemetry {
 /** Ends a stream that was left when the control loop stopped.  Must be called only while neither side is active. */
 void epg_telemetry_clear(epg_telemetry_t *telemetry);
 
+/* Both sides ------------------------------------------------------------------------------------------------- */
+
+/**
+ * Returns the row at place `index` of the ring: an array of doubles.  The first two hold the bits of its number and of
+ * its tick (64-bit whole numbers), the others hold the values.
+ */
+static inline double *epg_telemetry_row_at(const epg_telemetry_t *telemetry, uint32_t index)
+{
+    return &telemetry->memory[index * (telemetry->request.columns + EPG_TELEMETRY_HEAD)];
+}
+
+/** Returns the place after `index` in the ring. */
+static inline uint32_t epg_telemetry_next(const epg_telemetry_t *telemetry, uint32_t index)
+{
+    return index + 1U == telemetry->depth ? 0U : index + 1U;
+}
+
 /* Control side ----------------------------------------------------------------------------------------------- */
 
 /** Puts the row of a stream that runs into its ring, or drops the row if the ring is full. */

@@ -4,8 +4,8 @@
  * Access of the user's program to parameters.
  *
  * The communication side may change the same parameters (epg/parameters.h).  The control side makes the changes of both,
- * first those of the program, and gives the result to both.  The communication side must not take a result that is older than its own last
- * request; each result therefore has the number of requests that it contains.
+ * first those of the program, and gives the result to both.  The communication side must not take a result that is
+ * older than its own last request; each result therefore has the number of requests that it contains.
  */
 #include "epg/access.h"
 

@@ -229,14 +229,9 @@ static uint64_t wait_for_outputs(epg_control_t *control, const epg_application_t
     return epg_port_time_ns() - now_ns;
 }
 
-static uint32_t saturated(uint64_t value)
-{
-    return value < UINT32_MAX ? (uint32_t)value : UINT32_MAX;
-}
-
 static void count_lateness(epg_control_t *control, uint64_t tick_ns, uint64_t begin_ns)
 {
-    const uint32_t lateness = begin_ns > tick_ns ? saturated(begin_ns - tick_ns) : 0U;
+    const uint32_t lateness = begin_ns > tick_ns ? epg_statistics_saturated(begin_ns - tick_ns) : 0U;
     if (lateness > control->statistics.lateness_max) {
         control->statistics.lateness_max = lateness;
     }
@@ -249,7 +244,7 @@ static void count_lateness(epg_control_t *control, uint64_t tick_ns, uint64_t be
 static bool count_cycle(epg_control_t *control, uint64_t next_ns, uint64_t begin_ns, uint64_t end_ns, uint32_t missed)
 {
     epg_statistics_t *statistics = &control->statistics;
-    const uint32_t computation = saturated(end_ns - begin_ns);
+    const uint32_t computation = epg_statistics_saturated(end_ns - begin_ns);
 
     statistics->cycles++;
     if (computation < statistics->computation_min) {

@@ -11,19 +11,14 @@
 #include "epg/parameters.h"
 #include "epg/telemetry.h"
 
-static uint32_t saturated(uint64_t value)
-{
-    return value < UINT32_MAX ? (uint32_t)value : UINT32_MAX;
-}
-
 /** Sets the values about the loop before the row of a stream is taken. */
 static void set_loop_values(epg_control_t *control, uint64_t tick_ns)
 {
     const uint64_t total = control->statistics.computation_total;
     const uint64_t computation = control->application->telemetry->number == 0U ? 0U : total - control->loop_total;
     const uint64_t lateness = control->sampled_ns > tick_ns ? control->sampled_ns - tick_ns : 0U;
-    control->loop[EPG_LOOP_LATENESS] = (double)saturated(lateness);
-    control->loop[EPG_LOOP_COMPUTATION] = (double)saturated(computation);
+    control->loop[EPG_LOOP_LATENESS] = (double)epg_statistics_saturated(lateness);
+    control->loop[EPG_LOOP_COMPUTATION] = (double)epg_statistics_saturated(computation);
     control->loop_total = total;
 }
 
@@ -31,7 +26,8 @@ static void set_loop_values(epg_control_t *control, uint64_t tick_ns)
 static void set_replay_values(epg_control_t *control)
 {
     epg_parameters_t *parameters = control->application->parameters;
-    const uint32_t cycle = control->enabled ? saturated(control->statistics.cycles - control->first_cycle + 1U) : 0U;
+    const uint32_t cycle =
+        control->enabled ? epg_statistics_saturated(control->statistics.cycles - control->first_cycle + 1U) : 0U;
     epg_parameter_told_t told = {0};
     size_t untold = 0;
     if (parameters != NULL) {

@@ -1,30 +1,25 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The console by UDP: the socket, and the address that uses the target.
+ * The console by UDP: the address that uses the target, and its datagrams.
  */
 #define _POSIX_C_SOURCE 200809L
 
 #include "../udp_console.h"
 
-#include <errno.h>
-#include <netdb.h>
-#include <netinet/in.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include "../clock.h"
-#include "../udp_address.h"
 #include "epg/control.h"
+#include "udp_peer.h"
 #include "udp_session.h"
 
 enum {
     PACKETS = 64,      /* datagrams that are taken at once */
     LONGEST = 2048,    /* bytes of a datagram; a longer one is ignored */
     LINE = 300,        /* bytes of a person's datagram: a command has at most 256 characters */
-    NAME = 128,        /* bytes of an address as text */
     OTHERS = 4,        /* users of `disable` that wait for their answer */
     ENDED = 8,         /* sessions that must not begin again */
     SILENCE_MS = 2000, /* a user that is silent for this time leaves the target to another one, */
@@ -33,17 +28,12 @@ enum {
     MS = 1000 * 1000   /* ns */
 };
 
-typedef struct peer {
-    struct sockaddr_storage address;
-    socklen_t size;
-} peer_t;
-
 typedef enum user { NOBODY, PROGRAM, PERSON } user_t;
 
 /** A `disable` of an address that does not use the target. */
 typedef struct other {
     bool waiting;
-    peer_t peer;
+    epg_host_peer_t peer;
     bool person;
     uint32_t session;
     bool has_cycles;
@@ -56,15 +46,15 @@ struct epg_host_udp_console {
     int file;
     epg_control_t *control;
     user_t user;
-    bool parting; /**< a connection has ended, and the middleware does not know it yet */
-    peer_t peer;  /**< address of the user */
+    bool parting;         /**< a connection has ended, and the middleware does not know it yet */
+    epg_host_peer_t peer; /**< address of the user */
     uint64_t heard_ns;
     epg_host_udp_session_t session;
     uint32_t ended[ENDED];
     size_t ended_next;
     other_t others[OTHERS];
 
-    peer_t sender; /**< of the packet */
+    epg_host_peer_t sender; /**< of the packet */
     unsigned char packet[LONGEST];
     size_t packet_length;
     bool packet_waits; /**< the packet must be taken after the end of the last connection */
@@ -72,44 +62,11 @@ struct epg_host_udp_console {
 
 static epg_host_udp_console_t console;
 
-/* Addresses ---------------------------------------------------------------------------------------------------- */
-
-static bool equal(const peer_t *one, const peer_t *other)
-{
-    return one->size == other->size && memcmp(&one->address, &other->address, one->size) == 0;
-}
-
-/** Writes an address as text: 192.168.1.10:7000 or [::1]:7000. */
-static void name_of(const peer_t *peer, char *text, size_t size)
-{
-    char host[NAME];
-    char port[8];
-    if (getnameinfo((const struct sockaddr *)&peer->address, peer->size, host, sizeof host, port, sizeof port,
-                    NI_NUMERICHOST | NI_NUMERICSERV) != 0) {
-        host[0] = '\0';
-        port[0] = '\0';
-    }
-    snprintf(text, size, strchr(host, ':') != NULL ? "[%s]:%s" : "%s:%s", host, port);
-}
-
-static bool is_of_this_computer(const peer_t *peer)
-{
-    if (peer->address.ss_family == AF_INET) {
-        const struct sockaddr_in *address = (const struct sockaddr_in *)&peer->address;
-        return ntohl(address->sin_addr.s_addr) >> 24U == 127;
-    }
-    const struct sockaddr_in6 *address = (const struct sockaddr_in6 *)&peer->address;
-    return IN6_IS_ADDR_LOOPBACK(&address->sin6_addr);
-}
-
 /* Sending ------------------------------------------------------------------------------------------------------ */
 
-/** Sends a datagram.  Returns false if the system has no room for it now.  Another error loses it, as a network can. */
-static bool send_to(const peer_t *peer, const void *data, size_t size)
+static bool send_to(const epg_host_peer_t *peer, const void *data, size_t size)
 {
-    const ssize_t count = sendto(console.file, data, size, MSG_DONTWAIT | MSG_NOSIGNAL,
-                                 (const struct sockaddr *)&peer->address, peer->size);
-    return count >= 0 || (errno != EAGAIN && errno != EWOULDBLOCK && errno != ENOBUFS);
+    return epg_host_peer_send(console.file, peer, data, size);
 }
 
 static bool send_to_user(void *context, const unsigned char *data, size_t size)
@@ -118,11 +75,11 @@ static bool send_to_user(void *context, const unsigned char *data, size_t size)
     return send_to(&self->peer, data, size);
 }
 
-static void send_flags(const peer_t *peer, uint8_t flags, uint32_t session, const char *text)
+static void send_flags(const epg_host_peer_t *peer, uint8_t flags, uint32_t session, const char *text)
 {
-    unsigned char data[EPG_HOST_UDP_HEADER + NAME];
+    unsigned char data[EPG_HOST_UDP_HEADER + EPG_HOST_PEER_NAME];
     const epg_host_udp_header_t header = {.flags = flags, .session = session};
-    const size_t length = strnlen(text, NAME);
+    const size_t length = strnlen(text, EPG_HOST_PEER_NAME);
     epg_host_udp_write_header(data, &header);
     memcpy(data + EPG_HOST_UDP_HEADER, text, length);
     (void)send_to(peer, data, EPG_HOST_UDP_HEADER + length);
@@ -148,10 +105,10 @@ static void send_text(void)
 /** Tells the sender which address uses the target. */
 static void send_taken(bool person, uint32_t session)
 {
-    char name[NAME];
-    name_of(&console.peer, name, sizeof name);
+    char name[EPG_HOST_PEER_NAME];
+    epg_host_peer_name(&console.peer, name);
     if (person) {
-        char line[NAME + 64];
+        char line[EPG_HOST_PEER_NAME + 64];
         const int length = snprintf(line, sizeof line, "error line %s has this target: only disable acts\r\n", name);
         (void)send_to(&console.sender, line, (size_t)length);
     } else {
@@ -217,7 +174,7 @@ static void answer_later(bool person, uint32_t session, uint64_t now_ns)
     other_t *chosen = NULL;
     for (size_t i = 0; i < OTHERS; i++) {
         other_t *other = &console.others[i];
-        if (other->waiting && other->session == session && equal(&other->peer, &console.sender)) {
+        if (other->waiting && other->session == session && epg_host_peer_equal(&other->peer, &console.sender)) {
             return; /* it was repeated */
         }
         chosen = other->waiting ? chosen : other;
@@ -261,8 +218,8 @@ static void take_of_program(const epg_host_udp_header_t *header, uint64_t now_ns
     const unsigned char *body = console.packet + EPG_HOST_UDP_HEADER;
     const size_t size = console.packet_length - EPG_HOST_UDP_HEADER;
     const bool disables = (header->flags & EPG_HOST_UDP_DISABLE) != 0;
-    bool own =
-        console.user == PROGRAM && header->session == console.session.id && equal(&console.sender, &console.peer);
+    bool own = console.user == PROGRAM && header->session == console.session.id &&
+               epg_host_peer_equal(&console.sender, &console.peer);
     if (disables && !(own && epg_host_udp_session_is_old(&console.session, header->number))) {
         epg_control_request(console.control, false);
     }
@@ -324,7 +281,7 @@ static void take_of_person(uint64_t now_ns)
     if (disables) {
         epg_control_request(console.control, false);
     }
-    bool own = console.user == PERSON && equal(&console.sender, &console.peer);
+    bool own = console.user == PERSON && epg_host_peer_equal(&console.sender, &console.peer);
     if (!own && is_free(now_ns)) {
         begin(PERSON, 0, now_ns);
         own = true;
@@ -346,10 +303,7 @@ static bool receive(void)
         console.packet_waits = false;
         return true;
     }
-    memset(&console.sender, 0, sizeof console.sender);
-    console.sender.size = sizeof console.sender.address;
-    const ssize_t count = recvfrom(console.file, console.packet, LONGEST - 1, MSG_DONTWAIT | MSG_TRUNC,
-                                   (struct sockaddr *)&console.sender.address, &console.sender.size);
+    const ssize_t count = epg_host_peer_receive(console.file, &console.sender, console.packet, LONGEST - 1);
     console.packet_length = count > 0 && count < LONGEST ? (size_t)count : 0;
     console.packet[console.packet_length] = 0;
     return count >= 0;
@@ -414,71 +368,19 @@ static size_t writable(void *context)
 
 /* Opening ------------------------------------------------------------------------------------------------------ */
 
-static void refuse(const char *address, const char *reason, const char *hint)
-{
-    fprintf(stderr, "error: --console-udp %s: %s\nhint: %s\n", address, reason, hint);
-}
-
-/** Makes a socket that listens on `address`; -1, after a message, if this fails. */
-static int listen_on(const char *text, const epg_host_udp_address_t *address)
-{
-    const struct addrinfo wanted = {.ai_socktype = SOCK_DGRAM, .ai_flags = AI_PASSIVE};
-    const char *host = address->host[0] != '\0' ? address->host : "127.0.0.1";
-    struct addrinfo *found = NULL;
-    const int error = getaddrinfo(host, address->port, &wanted, &found);
-    if (error != 0) {
-        refuse(text, gai_strerror(error), "give an address of this computer, for example 127.0.0.1:7000");
-        return -1;
-    }
-    const int file = socket(found->ai_family, found->ai_socktype, found->ai_protocol);
-    const bool bound = file >= 0 && bind(file, found->ai_addr, found->ai_addrlen) == 0;
-    const int reason = errno;
-    freeaddrinfo(found);
-    if (bound) {
-        return file;
-    }
-    if (file >= 0) {
-        close(file);
-    }
-    if (reason == EADDRINUSE) {
-        refuse(text, "another program uses this port", "end it, or choose another port");
-    } else if (reason == EADDRNOTAVAIL) {
-        refuse(text, "this computer does not have this address", "'ip address' lists its addresses");
-    } else {
-        refuse(text, strerror(reason), "choose an address of this computer and a port above 1023");
-    }
-    return -1;
-}
-
-static void print_address(const char *name)
-{
-    peer_t own = {.size = sizeof own.address};
-    char text[NAME];
-    if (getsockname(console.file, (struct sockaddr *)&own.address, &own.size) != 0) {
-        return;
-    }
-    name_of(&own, text, sizeof text);
-    fprintf(stderr, "%s: the console listens on udp:%s\n", name, text);
-    if (!is_of_this_computer(&own)) {
-        fprintf(stderr, "%s: warning: anyone who can send datagrams to this address can move the robot\n", name);
-    }
-}
-
 epg_host_udp_console_t *epg_host_udp_console_open(const char *address, const epg_target_t *target)
 {
-    epg_host_udp_address_t parts;
-    (void)epg_host_udp_address_split(address, &parts);
     memset(&console, 0, sizeof console);
     console.stream = (epg_stream_t){
         .connected = connected, .read = read_bytes, .write = write_bytes, .writable = writable, .context = &console};
     console.session.send = send_to_user;
     console.session.context = &console;
     console.control = target->control;
-    console.file = listen_on(address, &parts);
+    console.file = epg_host_peer_listen(address);
     if (console.file < 0) {
         return NULL;
     }
-    print_address(target->application->name);
+    epg_host_peer_print(console.file, target->application->name);
     return &console;
 }
 
