@@ -16,9 +16,12 @@
 /** Bytes of the largest frame: each byte may need an escape byte before it. */
 #define EPG_USB_LARGEST_FRAME (2 * (EPG_USB_LARGEST_MESSAGE + EPG_USB_FRAME))
 
-/* Bytes of each port's buffers.  A middleware never waits for room, so the largest frame must fit. */
+/*
+ * Bytes of each port's buffers.  While the buffer for reception is full, the host waits, so nothing is lost.  For sending,
+ * a middleware never waits for room, so the largest frame must fit.
+ */
 #ifndef EPG_USB_RECEIVE_SIZE
-#define EPG_USB_RECEIVE_SIZE 512
+#define EPG_USB_RECEIVE_SIZE 256
 #endif
 #ifndef EPG_USB_SEND_SIZE
 #if EPG_USB_LARGEST_FRAME > 1024

@@ -5,12 +5,10 @@
  */
 #include "epg/control.h"
 
+#include "../sides.h"
 #include "epg/port.h"
 #include "row.h"
 #include "setpoint.h"
-
-enum { ENABLE = 1, LEASED = 2, REQUEST_BITS = 3 }; /* of a request */
-enum { LEASE_SHIFT = 20 };                         /* the end of a lease has the unit 2^20 ns */
 
 void epg_control_start(epg_control_t *control, const epg_application_t *application)
 {
@@ -52,13 +50,6 @@ static inline unsigned int newest(atomic_uint *word)
     return atomic_load_explicit(word, memory_order_relaxed);
 }
 
-/** Lets the accesses of the user's program act at a point.  Returns true if one of them returns true. */
-static inline bool reach(epg_control_t *control, epg_access_point_t point)
-{
-    epg_access_t *const accesses = atomic_load_explicit(&control->accesses, memory_order_acquire);
-    return accesses != NULL && accesses->reach(accesses, control, point);
-}
-
 static void stop_jog(epg_control_t *control)
 {
     if (control->application->jog != NULL) {
@@ -98,7 +89,7 @@ static void handle_request(epg_control_t *control, bool permitted, uint64_t now_
     }
     control->request_seen = request;
     stop_jog(control);
-    if ((request & ENABLE) == 0U) {
+    if ((request & EPG_REQUEST_ENABLE) == 0U) {
         control->enabled = false;
         return;
     }
@@ -108,7 +99,7 @@ static void handle_request(epg_control_t *control, bool permitted, uint64_t now_
     clear_fault(control);
     if (permitted) {
         control->enabled = true;
-        control->leased = (request & LEASED) != 0U;
+        control->leased = (request & EPG_REQUEST_LEASED) != 0U;
         control->initialise = true;
         control->consecutive_overruns = 0;
         epg_setpoints_enable(control->application, now_ns);
@@ -118,7 +109,7 @@ static void handle_request(epg_control_t *control, bool permitted, uint64_t now_
 /** Returns true if the lease has ended.  The difference modulo 2^32 has the right sign for 26 days. */
 static bool is_over(epg_control_t *control, uint64_t now_ns)
 {
-    return (int32_t)((uint32_t)(now_ns >> LEASE_SHIFT) - atomic_load(&control->lease)) >= 0;
+    return (int32_t)((uint32_t)(now_ns >> EPG_LEASE_SHIFT) - atomic_load(&control->lease)) >= 0;
 }
 
 /** Takes new setpoints and requests, and does all checks that can disable the target before a sensor is read. */
@@ -127,7 +118,7 @@ static void command(epg_control_t *control, const epg_application_t *application
     bool taken = application->setpoint_exchange != NULL && epg_exchange_has_news(application->setpoint_exchange) &&
                  epg_exchange_take(application->setpoint_exchange, application->samples) &&
                  epg_setpoints_take(application);
-    if (reach(control, EPG_ACCESS_BEGIN)) {
+    if (epg_reach(control, EPG_ACCESS_BEGIN)) {
         taken = true;
     }
     const bool refused = application->fail_safe != NULL && !application->fail_safe();
@@ -165,7 +156,7 @@ static bool run_model(epg_control_t *control)
         if (application->parameters != NULL) {
             epg_parameters_restore(application->parameters);
         }
-        reach(control, EPG_ACCESS_RESTORE);
+        epg_reach(control, EPG_ACCESS_RESTORE);
         control->initialise = false;
         control->model_valid = true;
         control->until_step = 0;
@@ -338,7 +329,7 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
         }
     }
     control->statistics.setpoints_dropped = newest(&control->dropped);
-    reach(control, stepped ? EPG_ACCESS_STEPPED : EPG_ACCESS_RESTED);
+    epg_reach(control, stepped ? EPG_ACCESS_STEPPED : EPG_ACCESS_RESTED);
     if (application->capture != NULL) {
         record(control, application, tick_ns);
     }
@@ -358,71 +349,4 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
 void epg_control_count_clamped(epg_control_t *control)
 {
     control->statistics.clamped++;
-}
-
-/* Communication side ------------------------------------------------------------------------------------------- */
-
-bool epg_control_monitor(epg_control_t *control, double *values)
-{
-    const epg_application_t *application = control->application;
-    return application != NULL && application->monitor_exchange != NULL &&
-           epg_exchange_read(application->monitor_exchange, values);
-}
-
-bool epg_control_status(epg_control_t *control, epg_status_t *status)
-{
-    return epg_exchange_read(&control->status_exchange, status);
-}
-
-bool epg_control_observe(epg_control_t *control, epg_status_t *status)
-{
-    atomic_store(&control->observed, true);
-    return epg_exchange_read(&control->observer_exchange, status);
-}
-
-static void send_request(epg_control_t *control, unsigned int bits)
-{
-    const unsigned int sequence = (atomic_load(&control->request) | REQUEST_BITS) + 1U;
-    atomic_store(&control->request, sequence | bits);
-}
-
-void epg_control_request(epg_control_t *control, bool enable)
-{
-    send_request(control, enable ? ENABLE : 0U);
-}
-
-void epg_control_request_leased(epg_control_t *control, uint64_t until_ns)
-{
-    epg_control_extend(control, until_ns);
-    send_request(control, ENABLE | LEASED);
-}
-
-void epg_control_extend(epg_control_t *control, uint64_t until_ns)
-{
-    atomic_store(&control->lease, (unsigned int)(until_ns >> LEASE_SHIFT));
-}
-
-void epg_control_reset(epg_control_t *control)
-{
-    atomic_store(&control->reset, true);
-}
-
-void epg_control_count_reconnect(epg_control_t *control)
-{
-    atomic_store(&control->reconnects, atomic_load(&control->reconnects) + 1U);
-}
-
-void epg_control_alive(epg_control_t *control)
-{
-    const unsigned int alive = atomic_load(&control->alive) + 1U;
-    atomic_store(&control->alive, alive == 0U ? 1U : alive); /* 0 means never */
-    reach(control, EPG_ACCESS_TURN);
-}
-
-void epg_control_report_stack(epg_control_t *control, unsigned int stack, uint32_t used, uint32_t size)
-{
-    if (stack < EPG_STACKS) {
-        atomic_store(&control->stacks[stack].used, used);
-        atomic_store(&control->stacks[stack].size, size);
-    }
 }

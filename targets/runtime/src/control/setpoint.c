@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Setpoints: their age and rate limit on the control side, and their reception on the communication side.
+ * Setpoints: their age and rate limit.
  */
 #include "setpoint.h"
-
-#include "epg/finite.h"
 
 bool epg_setpoints_start(const epg_application_t *application)
 {
@@ -95,31 +93,4 @@ const epg_setpoint_t *epg_setpoints_update(const epg_application_t *application,
             setpoint->rate_limit > 0.0 ? limited(application, setpoint, state->value, state->target) : state->target;
     }
     return late;
-}
-
-/* Communication side ------------------------------------------------------------------------------------------- */
-
-bool epg_control_receive(epg_control_t *control, size_t index, double value, uint64_t received_ns, bool publish)
-{
-    const epg_application_t *application = control->application;
-    if (application == NULL || index >= application->setpoint_count) {
-        return false;
-    }
-    const bool finite = epg_is_finite(value);
-    if (finite) {
-        epg_setpoint_sample_t *sample = &application->received[index];
-        sample->value = value;
-        sample->received_ns = received_ns;
-        sample->count = sample->count == UINT32_MAX ? 1U : sample->count + 1U; /* 0 means that there is none yet */
-    } else {
-        /* The Cortex-M0+ has no atomic read-modify-write.  None is needed: only this side writes the word. */
-        atomic_store(&control->dropped, atomic_load(&control->dropped) + 1U);
-    }
-    if (publish) {
-        epg_exchange_write(application->setpoint_exchange, application->received);
-    }
-    if (application->arrived != NULL) {
-        application->arrived(index);
-    }
-    return finite;
 }

@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/**
+ * @file
+ * The form of the words in epg_control_t that both sides use.
+ */
+#ifndef EPG_SIDES_H
+#define EPG_SIDES_H
+
+#include "epg/access.h"
+#include "epg/control.h"
+
+/** Bits of the word `request`. */
+enum {
+    EPG_REQUEST_ENABLE = 1,
+    EPG_REQUEST_LEASED = 2,
+    EPG_REQUEST_BITS = 3 /**< all of them; the bits above are a number, which makes each request a new one */
+};
+
+/** The word `lease` has the unit 2^EPG_LEASE_SHIFT ns. */
+enum { EPG_LEASE_SHIFT = 20 };
+
+/** Lets the accesses of the user's program act at a point.  Returns true if one of them returns true. */
+static inline bool epg_reach(epg_control_t *control, epg_access_point_t point)
+{
+    epg_access_t *const accesses = atomic_load_explicit(&control->accesses, memory_order_acquire);
+    return accesses != NULL && accesses->reach(accesses, control, point);
+}
+
+#endif
