@@ -54,13 +54,21 @@ static void rest(void)
     (void)ulTaskNotifyTake(pdTRUE, pdMS_TO_TICKS(1));
 }
 
-/** One turn, and a rest unless the kernel's tick has come meanwhile: from one turn to the next is at most a tick. */
+/**
+ * One turn, and a rest unless the kernel's tick has come meanwhile: from one turn to the next is at most a tick.
+ *
+ * A tick between the comparison and the rest would make the rest a whole tick long.  Interrupts are therefore off until
+ * the kernel, within the rest, holds its tick count still or has put the task to sleep.  It then switches them on.
+ */
 static void serve_until_tick(void)
 {
     const TickType_t begin = xTaskGetTickCount();
     service();
+    portDISABLE_INTERRUPTS();
     if (xTaskGetTickCount() == begin) {
         rest();
+    } else {
+        portENABLE_INTERRUPTS();
     }
 }
 
