@@ -149,17 +149,13 @@ void epg_console_jog(epg_console_session_t *session, const epg_console_command_t
 }
 
 /** Appends a number that always has a sign, because the user must see the direction. */
-static void put_signed(epg_console_output_t *output, const char *name, double value, bool whole)
+static void put_signed(epg_console_output_t *output, const char *name, double value)
 {
     epg_console_key(output, name);
     if (value > 0.0) {
         epg_console_text(output, "+");
     }
-    if (whole) {
-        epg_console_integer(output, (int64_t)value);
-    } else {
-        epg_console_double(output, value);
-    }
+    epg_console_double(output, value);
 }
 
 static bool moved_line(epg_console_session_t *session, size_t index)
@@ -172,8 +168,8 @@ static bool moved_line(epg_console_session_t *session, size_t index)
     const epg_jog_reading_t *last = &jog->last[index];
     epg_console_begin(&session->output, "moved ");
     epg_console_text(&session->output, jog->encoders[index].name);
-    put_signed(&session->output, "count", (double)(last->count - first->count), true);
-    put_signed(&session->output, "position", last->position - first->position, false);
+    put_signed(&session->output, "count", (double)(last->count - first->count));
+    put_signed(&session->output, "position", last->position - first->position);
     epg_console_unit(&session->output, jog->encoders[index].unit);
     return true;
 }
