@@ -60,7 +60,10 @@ static bool read_trigger(epg_console_session_t *session, const char *text, epg_c
         request->trigger = EPG_CAPTURE_FAULT;
         return true;
     }
-    const char *sign = strchr(text, '>') != NULL ? strchr(text, '>') : strchr(text, '<');
+    const char *sign = strchr(text, '>');
+    if (sign == NULL) {
+        sign = strchr(text, '<');
+    }
     const size_t length = sign != NULL ? (size_t)(sign - text) : sizeof name;
     if (length >= sizeof name) {
         epg_console_error(session, "capture", "use when=<port>><number>, when=<port><<number> or when=fault", NULL);

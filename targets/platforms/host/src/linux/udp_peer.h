@@ -33,7 +33,10 @@ bool epg_host_peer_equal(const epg_host_peer_t *one, const epg_host_peer_t *othe
 /** Writes an address as text: 192.168.1.10:7000 or [::1]:7000. */
 void epg_host_peer_name(const epg_host_peer_t *peer, char text[EPG_HOST_PEER_NAME]);
 
-/** Sends a datagram.  Returns false if the system has no room for it now.  Another error loses it, as a network can. */
+/**
+ * Sends a datagram.  Returns false if the system does not have room for it now.  After another error the datagram is
+ * lost, as in a network.
+ */
 bool epg_host_peer_send(int file, const epg_host_peer_t *peer, const void *data, size_t size);
 
 /** Receives a datagram of any size, and the first `size` bytes of it.  Returns its own size; negative: there is none. */
