@@ -2,14 +2,16 @@
 """Hooks of the build: they add files other than the Python package to a wheel, and list the packages that EPG needs.
 
 A wheel has copies of ``cmake/``, ``targets/``, ``schemas/``, Zephyr's module and the page about messages in
-``epg/_data``.  An editable install uses the files of the checkout, so a change there has an effect at once.  Both
-install ``share/EPG/cmake/EPGConfig.cmake``, where CMake searches for packages.
+``epg/_data``, and the schemas that editors read.  An editable install uses the files of the checkout, so a change there
+has an effect at once.  Both install ``share/EPG/cmake/EPGConfig.cmake``, where CMake searches for packages.
 """
 
 from __future__ import annotations
 
 import re
 import runpy
+import subprocess
+import sys
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -21,21 +23,23 @@ JIWY = ("CMakeLists.txt", "README.md", "ideal_loop.py", "jiwy.bindings.yaml", "m
 PLANTS = ("plant", "plant.bindings.yaml")
 EXAMPLES = (*(f"examples/jiwy/{name}" for name in JIWY + PLANTS), *(f"examples/relbot/{name}" for name in PLANTS))
 """The example of the README, without a build folder in it, and the simulated robots that `epg new` writes."""
-DATA = ("cmake", "targets", "schemas", "integration", "zephyr", "zephyr_module", "docs/errors.md", *EXAMPLES)
+DATA = ("cmake", "targets", "integration", "zephyr", "zephyr_module", "docs/errors.md", *EXAMPLES)
 
 
 EXTRAS = {"zephyr": "zephyr", "plot": "plot", "ros": "ros", "mcap": "mcap", "test": "test_all"}
-"""The optional dependencies ("extras" of pip), and the file of ``epg/lock`` that lists the packages of each."""
+"""The optional dependencies ("extras" of pip), and the file of ``epg/generator/lock`` that lists the packages of
+each."""
 
 
 class EpgMetadataHook(MetadataHookInterface):
-    """Reads the dependencies from ``epg/lock/*.in``, the only files that name packages and their oldest versions."""
+    """Reads the dependencies from ``epg/generator/lock/*.in``, the only files that name packages and their oldest
+    versions."""
 
     PLUGIN_NAME = "custom"
 
     def update(self, metadata: dict[str, Any]) -> None:
-        # An import of epg.bootstrap could lead to another EPG, which is installed where the wheel is built.
-        lines = runpy.run_path(str(Path(self.root) / "epg/bootstrap.py"))["requirement_lines"]
+        # An import of epg.generator.bootstrap could lead to another EPG, which is installed where the wheel is built.
+        lines = runpy.run_path(str(Path(self.root) / "epg/generator/bootstrap.py"))["requirement_lines"]
         metadata["dependencies"] = lines("generator")
         metadata["optional-dependencies"] = {extra: lines(group) for extra, group in EXTRAS.items()}
 
@@ -53,6 +57,7 @@ class EpgBuildHook(BuildHookInterface):
         if version != "editable":
             for name in DATA:
                 build_data["force_include"][str(root / name)] = f"epg/_data/{name}"
+            self._add_schemas(build_data["force_include"])
         forwarder = root / "cmake/forwarder"
         sources = {
             "EPGConfig.cmake": forwarder / ("EPGConfig.editable.cmake" if version == "editable" else "EPGConfig.cmake"),
@@ -64,6 +69,18 @@ class EpgBuildHook(BuildHookInterface):
             text = text.replace("@VERSION@", found[1]).replace("@CHECKOUT@", root.as_posix())
             (self.folder / name).write_text(text, encoding="utf-8")
             build_data["shared_data"][str(self.folder / name)] = f"share/EPG/cmake/{name}"
+
+    def _add_schemas(self, included: dict[str, str]) -> None:
+        """Adds ``schemas/``, and the schemas for editors, which a checkout need not have."""
+        for path in (Path(self.root) / "schemas").glob("*.json"):
+            included[str(path)] = f"epg/_data/schemas/{path.name}"
+        # Another process, because an EPG may be installed where the wheel is built.
+        code = (
+            "import sys; from pathlib import Path; sys.path.insert(0, sys.argv[1]);"
+            "from epg.cli.schema import write_editor_schemas; write_editor_schemas(Path(sys.argv[2]))"
+        )
+        subprocess.run([sys.executable, "-B", "-c", code, self.root, str(self.folder / "editor")], check=True)
+        included[str(self.folder / "editor")] = "epg/_data/schemas/editor"
 
     def finalize(self, version: str, build_data: dict[str, Any], artifact_path: str) -> None:
         import shutil

@@ -17,7 +17,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
-from measure import EPG, JIWY, ROOT, all_in_turns, run
+from measure import EPG, JIWY, ROOT, all_in_turns, jiwy_files, run
 from report import Table, arguments, command_line, milliseconds, show
 
 BORDER = 0.005
@@ -72,11 +72,12 @@ def shared_libraries() -> str:
     """CMake code for the libraries that all targets share, with the sources of EPG's."""
     runtime, host = ROOT / "targets" / "runtime", ROOT / "targets" / "platforms" / "host"
     console = ROOT / "targets" / "middlewares" / "console"
-    platform = [path for path in sorted((host / "src").glob("*.c")) if path.name != "main.c"]
+    sources = sorted([*host.glob("src/*/*.c"), *host.glob("src/*/linux/*.c")])
+    platform = [path for path in sources if path.name != "main.c"]
     return f"""add_library(epg_runtime STATIC EXCLUDE_FROM_ALL {listed(sorted((runtime / "src").glob("*/*.c")))})
 target_include_directories(epg_runtime PUBLIC "{runtime / "include"}")
 add_library(epg_host STATIC EXCLUDE_FROM_ALL {listed(platform)})
-target_include_directories(epg_host PUBLIC "{host / "include"}")
+target_include_directories(epg_host PUBLIC "{host / "include"}" PRIVATE "{host / "src"}" "{console}")
 target_link_libraries(epg_host PUBLIC epg_runtime -pthread m)
 add_library(console STATIC EXCLUDE_FROM_ALL {listed(sorted(console.glob("*.c")))})
 target_include_directories(console PUBLIC "{console}")
@@ -86,9 +87,7 @@ target_link_libraries(console PUBLIC epg_runtime)
 
 def copied(output: Path, name: str) -> str:
     """CMake code for the libraries of one target with the sources of EPG's, as a user would write it without EPG."""
-    command: list[str | Path] = [sys.executable, EPG, "generate", name, "--tcf", "host_jiwy.tcf"]
-    command += ["--model", JIWY / "model", "--bindings", JIWY / "jiwy.bindings.yaml"]
-    run([*command, "--output", output])
+    run([sys.executable, EPG, "generate", name, *jiwy_files("host_jiwy.tcf"), "--output", output])
     exported = [output / f"{name}_model_export.c", *sorted((JIWY / "model").glob("*.c"))]
     kinds = [str(path) for path in sorted((ROOT / "targets" / "components").iterdir()) if path.is_dir()]
     return f"""add_library({name}_export OBJECT EXCLUDE_FROM_ALL {listed(exported)})

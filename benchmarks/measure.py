@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures wall times for a comparison: the actions run in turns, so the load of the computer affects all of them.
 
+A program that imports this module finds the packages ``epg`` and ``tests``, too.
+
 >>> times = in_turns({"nothing": lambda: None, "sum": lambda: sum(range(1000))}, rounds=5)
 >>> sorted(times)
 ['nothing', 'sum']
@@ -11,6 +13,7 @@ from __future__ import annotations
 import os
 import statistics
 import subprocess
+import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -18,6 +21,23 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 EPG = ROOT / "epg" / "__main__.py"
 JIWY = ROOT / "examples" / "jiwy"
+sys.path.insert(0, str(ROOT))
+
+
+def need(*tools: Callable[[], object]) -> None:
+    """Ends the program with a message if one of ``tools``, which search a tool for the tests, does not find it."""
+    from tests.emulator.toolchain import Missing  # not at the top: other benchmarks run without the tests
+
+    try:
+        for tool in tools:
+            tool()
+    except Missing as missing:
+        raise SystemExit(str(missing)) from None
+
+
+def jiwy_files(tcf: str | Path) -> list[str]:
+    """The arguments of ``epg`` for the files of JIWY."""
+    return ["--tcf", str(tcf), "--model", str(JIWY / "model"), "--bindings", str(JIWY / "jiwy.bindings.yaml")]
 
 
 def in_turns(actions: Mapping[str, Callable[[], object]], rounds: int) -> dict[str, float]:

@@ -16,14 +16,12 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from measure import ROOT, run
+from measure import run
 from report import Table, arguments, command_line, show
 
-sys.path.insert(0, str(ROOT))
-
-from epg.diagnostics import Diagnostics
+from epg.generator.diagnostics import Diagnostics
+from epg.runs.scenario import Profile, Scenario
 from epg.simulate.load_scenario import load_scenario
-from epg.simulate.scenario import Profile, Scenario
 from tests.emulator.toolchain import Missing
 from tests.ros2.build import Build, build_robots
 from tests.ros2.correlation import errors, fine_lag, lag
@@ -47,8 +45,8 @@ FINER = ["finer: pan or left", "finer: tilt or right", "simulated: pan or left",
 
 RESOLUTION = (
     "The thesis's table 5.5 has real JIWYs behind agents on two Raspberry Pis. Its resolution, and that of the columns "
-    "beside it, is the interval of 33 ms; the finer columns are a least squares fit in steps of 1 ms. "
-    "So are the simulated ones: lags of the systems in examples/network_situations, in simulated time."
+    "beside it, is the interval of 33 ms; the finer and the simulated columns are least squares fits in steps of 1 "
+    "ms."
 )
 
 
@@ -135,12 +133,7 @@ def shared_table(logs: dict[int, Logs], simulated: Simulated) -> Table:
             cells = lag_cells(lags(logs[number], robot, robot.follows))
             rows.append([name, *thesis, *cells, *simulated.get(name, ("-", "-"))])
     head = ["situation and robot", "thesis: pan", "thesis: tilt", "pan or left", "tilt or right"]
-    return Table(
-        "Lag of positions behind setpoints, ms",
-        [*head, *FINER],
-        rows,
-        [RESOLUTION],
-    )
+    return Table("Lag of positions behind setpoints, ms", [*head, *FINER], rows, [RESOLUTION])
 
 
 def teleoperation_table(logs: dict[int, Logs], simulated: Simulated) -> Table:

@@ -7,21 +7,18 @@ sent over the console every 33 ms.
 
 from __future__ import annotations
 
-import sys
 import tempfile
 from array import array
 from collections.abc import Sequence
 from pathlib import Path
 
-from measure import JIWY, ROOT
+from measure import JIWY, ROOT, need
 from report import Table, arguments, command_line, show
 
-sys.path.insert(0, str(ROOT))
-
-from epg.diagnostics import Diagnostics
+from epg.generator.diagnostics import Diagnostics
+from epg.runs.tracking import WindowResult
 from epg.simulate.plot import plot
-from epg.simulate.tracking import WindowResult
-from tests.emulator.toolchain import Missing, arm_gcc, node, pico_sdk, rp2040js
+from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js
 from tests.platforms.pico.closed_loop.comparison import CONTROL, Comparison, compare
 from tests.platforms.pico.closed_loop.robot import AXES
 from tests.platforms.pico.images import PLATFORMS, freertos_kernel
@@ -33,11 +30,7 @@ TITLES = {"bare_metal": "image, bare metal", "freertos": "image, FreeRTOS"}
 
 def main() -> None:
     options = arguments(__doc__, short=0, plot=0)
-    try:
-        for need in (pico_sdk, arm_gcc, node, rp2040js, freertos_kernel):
-            need()
-    except Missing as missing:
-        raise SystemExit(str(missing)) from None
+    need(pico_sdk, arm_gcc, node, rp2040js, freertos_kernel)
     scenario = SHORT if options.short else JIWY / "tracking.yaml"
     angles = {"pan": 0.2, "tilt": 0.2} if options.short else {"pan": 1.2, "tilt": 0.7}
     with tempfile.TemporaryDirectory() as folder:
@@ -84,9 +77,8 @@ def difference_table(compared: dict[str, Comparison]) -> Table:
     differing = {platform: differing_cycles(comparison) for platform, comparison in compared.items()}
     cycles = next(iter(compared.values())).image.cycles
     notes = [
-        "Position of the image's robot minus that of the host's, after homing. The two robots are not the same "
-        "physics: the host's has springs for end stops and a dry friction that is viscous below 0.2 rad/s; and by USB "
-        "setpoints come some ms later.",
+        "Position of the image's robot minus that of the host's, after homing. The host's robot has springs for end "
+        "stops and a dry friction that is viscous below 0.2 rad/s; by USB, setpoints come some ms later.",
         f"The host's controller, given the counts and setpoints that the image had in each of its {cycles:,} cycles, "
         "computes other bits in "
         + " and ".join(f"{count:,} cycles ({TITLES[platform]})" for platform, count in differing.items())

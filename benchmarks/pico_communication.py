@@ -10,16 +10,13 @@ from __future__ import annotations
 
 import os
 import re
-import sys
 from pathlib import Path
 
-from measure import ROOT
+from measure import need
 from report import Table, arguments, command_line, show
 
-sys.path.insert(0, str(ROOT))
-
 from tests.emulator.emulator import Emulator
-from tests.emulator.toolchain import Missing, arm_gcc, node, pico_sdk, rp2040js
+from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js
 from tests.platforms.pico.images import freertos_kernel, images, ram_of, size_of
 from tests.platforms.pico.micro_ros.firmware import VARIABLE
 from tests.platforms.pico.micro_ros.firmware import firmware as micro_ros_firmware
@@ -46,19 +43,14 @@ COMMANDS = ("help", "ports", "stats", "get", "watch", "capture 1")
 
 def main() -> None:
     options = arguments(__doc__, targets=len(TARGETS))
-    try:
-        for need in (pico_sdk, arm_gcc, node, rp2040js, freertos_kernel):
-            need()
-    except Missing as missing:
-        raise SystemExit(str(missing)) from None
+    need(pico_sdk, arm_gcc, node, rp2040js, freertos_kernel)
     chosen = list(TARGETS)[: options.targets]
     rows = [row(*target, middleware) for target in chosen for middleware in MIDDLEWARES if possible(target, middleware)]
     head = ["image", "middleware", "flash", "RAM", "of RAM", "stack used", "stack"]
     notes = [
-        "Bytes. Executables of EPG's own, which run from flash; code and constants of the control cycle are in RAM, "
-        "and also in flash, from which the start copies them. RAM includes the reserved stacks and heap. Float and "
-        "double arithmetic is the compiler's on Pico. Stack: that of the communication side, within RAM; used: at "
-        "most, in two simulated seconds on RP2040, as the console says."
+        "Bytes. Executables that run from flash; code and constants of the control cycle are in both. RAM includes "
+        "the reserved stacks and heap. Stack: that of the communication side; used: at most, in two simulated "
+        "seconds on RP2040."
     ]
     table = Table("Size of JIWY's images by middleware", head, rows, notes)
     show("pico_communication", [table], options.write, command_line("pico_communication"))

@@ -9,21 +9,18 @@ from __future__ import annotations
 
 import re
 import subprocess
-import sys
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import fmean
 
-from measure import ROOT
+from measure import ROOT, need
 from report import Table, arguments, command_line, show
-
-sys.path.insert(0, str(ROOT))
 
 from tests.emulator.build import build
 from tests.emulator.emulator import Emulator
-from tests.emulator.toolchain import Missing, arm_gcc, node, pico_sdk, rp2040js, unicorn
+from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js, unicorn
 from tests.platforms.pico.closed_loop.recording import INPUTS
 from tests.platforms.pico.closed_loop.robot import AXES, connect
 from tests.platforms.pico.images import freertos_kernel, size_of
@@ -44,10 +41,7 @@ BORDER = 1.1
 HOMED = 900
 """Time from reset in ms, after which both axes have homed from 0.12 rad."""
 SETPOINTS = "pan_subscriber=0.8 tilt_subscriber=0.5\n"
-SIMULATED = (
-    "Simulated, with the compiler's doubles: a board has those of the boot ROM (RP2040) or a coprocessor (RP2350), "
-    "which are faster, and waits for the bus, which the simulation does not."
-)
+SIMULATED = "Simulated, with the compiler's doubles, which are slower than a board's, and without waits for the bus."
 
 
 @dataclass(frozen=True)
@@ -60,11 +54,7 @@ class Cost:
 
 def main() -> None:
     options = arguments(__doc__, cycles=500)
-    try:
-        for need in (pico_sdk, arm_gcc, node, rp2040js, freertos_kernel, unicorn):
-            need()
-    except Missing as missing:
-        raise SystemExit(str(missing)) from None
+    need(pico_sdk, arm_gcc, node, rp2040js, freertos_kernel, unicorn)
     programs = {
         "EPG, bare metal": (generated("bare_metal", 33), GENERATED),
         "EPG, FreeRTOS": (generated("freertos", 33), GENERATED),
@@ -115,9 +105,8 @@ def rp2040_table(costs: Mapping[str, Cost], count: int) -> Table:
     notes = [
         f"Aim: beside the model at most {BORDER} x of the time by hand: {judged} ({ratio:.2f} x).",
         f"Means of {count} cycles in which both axes move, from the first instruction of the tick's handler to its "
-        "end, without the wait for the output delay. Inputs: encoders, motion guards, setpoints, and by hand requests. "
-        "Rest: the tick, exchanges, statistics, tests for values that are not finite, the watchdog, and of EPG "
-        "requests and what nobody uses.",
+        "end, without the wait for the output delay. Inputs: encoders, motion guards, setpoints, and by hand "
+        "requests. Rest: all else, and of EPG requests.",
         SIMULATED,
     ]
     return Table("A control cycle on RP2040, simulated", head, rows, notes)
@@ -217,7 +206,6 @@ def rp2350_table(count: int) -> Table:
     notes = [
         f"Means of {len(counted)} cycles of homing, with encoders that turn; from the runtime's epg_control_cycle() "
         "on, without tick and interrupt.",
-        SIMULATED,
     ]
     return Table("A control cycle on RP2350, instructions, simulated", ["part", "EPG, bare metal"], rows, notes)
 
@@ -260,8 +248,8 @@ def size_table() -> Table:
             rows.append(size_row(f"EPG, {title}, {name}", board, platform, "jiwy_in_ram_33"))
         rows.append(size_row(f"by hand, {title}, bare metal", board, "bare_metal", "by_hand_wrap_core1"))
     notes = [
-        "All run from RAM here, so text takes RAM too; arithmetic is the SDK's own. By hand: the SDK's stdio over USB, "
-        "setpoints, positions and statistics, none of the rest of the console, no capture (16 kB of bss), no store."
+        "All run from RAM here; arithmetic is the SDK's own. By hand: the SDK's stdio over USB, setpoints, "
+        "positions and statistics, without the rest of the console, capture (16 kB of bss) and store."
     ]
     return Table("Size of JIWY, bytes", ["image", "text", "data", "bss"], rows, notes)
 

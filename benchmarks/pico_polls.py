@@ -6,14 +6,10 @@ JIWY's images run from flash, in the emulator with the time of flash.  The ticks
 
 from __future__ import annotations
 
-import sys
-
-from measure import ROOT
+from measure import need
 from report import Table, arguments, command_line, show
 
-sys.path.insert(0, str(ROOT))
-
-from tests.emulator.toolchain import Missing, arm_gcc, node, pico_sdk, rp2040js
+from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js
 from tests.platforms.pico.images import freertos_kernel
 from tests.platforms.pico.polls.measure import Polls, measure_uart, measure_usb
 
@@ -22,11 +18,7 @@ PLATFORMS = {"bare_metal": "bare metal", "freertos": "FreeRTOS"}
 
 def main() -> None:
     options = arguments(__doc__, milliseconds=100, platforms=len(PLATFORMS))
-    try:
-        for need in (pico_sdk, arm_gcc, node, rp2040js, freertos_kernel):
-            need()
-    except Missing as missing:
-        raise SystemExit(str(missing)) from None
+    need(pico_sdk, arm_gcc, node, rp2040js, freertos_kernel)
     rows = [
         row(title, polls)
         for platform, title in list(PLATFORMS.items())[: options.platforms]
@@ -37,7 +29,7 @@ def main() -> None:
     notes = [
         "Longest: from the begin of a turn of communication to the begin of the next one. It is meant to be at most a "
         "millisecond. Each line carries as many bytes as it can: USB 64 bytes in 45 to 105 us, the UART 460800 or "
-        "921600 baud. A turn that writes a long line of the console takes longest.",
+        "921600 baud.",
         "Simulated, with the cache of the flash and the contention of the cores. From its start on, core 1 must not "
         "access flash. The arithmetic is the compiler's, not the ROM's.",
     ]

@@ -9,18 +9,15 @@ is a node of an XRCE agent.
 from __future__ import annotations
 
 import re
-import sys
 from collections import Counter
 from pathlib import Path
 
-from measure import ROOT
+from measure import need
 from report import Table, arguments, command_line, show
-
-sys.path.insert(0, str(ROOT))
 
 from tests.emulator.build import build
 from tests.emulator.emulator import Emulator
-from tests.emulator.toolchain import Missing, arm_gcc, node, pico_sdk, rp2040js, tool
+from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js, tool
 from tests.platforms.pico.images import images, size_of
 from tests.platforms.pico.xrce.agent import BoardAgent
 
@@ -65,12 +62,8 @@ NO_TEXT = (".bss", "COMMON", ".stack", ".heap", ".uninit", ".scratch", ".debug",
 
 def main() -> None:
     options = arguments(__doc__)
-    try:
-        for need in (pico_sdk, arm_gcc, node, rp2040js):
-            need()
-        client = {"CLIENT": str(tool("micro_xrce_dds_client")), "CDR": str(tool("micro_cdr"))}
-    except Missing as missing:
-        raise SystemExit(str(missing)) from None
+    need(pico_sdk, arm_gcc, node, rp2040js, lambda: tool("micro_xrce_dds_client"), lambda: tool("micro_cdr"))
+    client = {"CLIENT": str(tool("micro_xrce_dds_client")), "CDR": str(tool("micro_cdr"))}
     ours = {name: images("pico", "bare_metal", "jiwy_in_ram", middleware=name) for name in MIDDLEWARES}
     by_hand = build("benchmarks/client_alone", variables=client)
     check_that_it_publishes(by_hand / "by_hand_client.elf")
@@ -139,9 +132,8 @@ def comparison(ours: dict[str, Path], by_hand: dict[str, Path]) -> Table:
     rows += [[title, text, ram, "", ""] for title, text, ram in OTHERS]
     head = ["program", "text", "data and bss", "text beyond none", "data and bss beyond none"]
     notes = [
-        "Same board, model and encoders, both axes. The program with eProsima's client has JIWY's four topics of "
-        "values, and waits for each answer of the agent. It has none of these: the topic and the services that enable "
-        "and reset, time stamps, checks of received frames. EPG's USB device also reboots the board for picotool.",
+        "Same board, model and encoders. The program with eProsima's client has JIWY's four topics of values, "
+        "without enabling, reset, time stamps and checks of received frames.",
         "[1] [micro_ros](micro-ros.md#libmicroros): an earlier measurement, without services and parameters in "
         "micro_ros. 32 kB of the text and 30 kB of the RAM are libmicroros, which EPG does not build. micro-ROS "
         "publishes RAM of rclc, but not its text: <https://micro.ros.org/docs/concepts/benchmarking/memo_prof/>.",

@@ -42,7 +42,7 @@ class Table:
     def markdown(self) -> str:
         """The table in Markdown for the page."""
         right = [column > 0 and all(_is_number(row[column]) for row in self.rows) for column in range(len(self.head))]
-        out = [f"### {self.title}", "", _row(self.head), _row(["---:" if r else "---" for r in right])]
+        out = [f"### {self.title}", "", _row(self.head), f"|{'|'.join('---:' if r else '---' for r in right)}|"]
         out += [_row(row) for row in self.rows]
         return "\n".join([*out, *(f"\n{note}" for note in self.notes)])
 
@@ -63,7 +63,10 @@ def show(name: str, tables: Sequence[Table], write: bool, command: str) -> None:
         return
     text = PAGE.read_text(encoding="utf-8")
     begin, end = f"<!-- begin {name} -->", f"<!-- end {name} -->"
-    body = [f"Command: `{command}`. Machine: {machine()}.", *(table.markdown() for table in tables)]
+    body = [f"Command: `{command}`.", *(table.markdown() for table in tables)]
+    head = " ".join(text.partition("<!-- begin")[0].split())
+    if machine() not in head:  # the top of the page states the usual machine
+        body[0] += f" Machine: {machine()}."
     section = "\n\n".join([begin, *body, end])
     if begin not in text:
         raise SystemExit(f"{PAGE.name} has no section '{name}': write '{begin}' and '{end}' where it belongs")

@@ -17,7 +17,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from measure import EPG, JIWY, ROOT, run
+from measure import EPG, JIWY, ROOT, jiwy_files, run
 from report import Table, arguments, command_line, show
 
 SOURCES = Path(__file__).resolve().parent / "runtime"
@@ -26,7 +26,7 @@ OPTIONS = ["-std=c11", "-O2", "-ffp-contract=off"]
 WARNINGS = ["-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Werror"]
 BORDER = 1.1
 # The program written by hand has no dead time. With the default dead time, the generated program would write other
-# levels than that program.
+# levels than that program.  The program written by hand does not limit setpoints either.
 ROBOT = """version: 1
 extends: host_jiwy.tcf
 control: {enable_at_start: true}
@@ -34,6 +34,8 @@ communication: {middleware: none}
 components:
   pwm_pan: {dead_time: 0 s}
   pwm_tilt: {dead_time: 0 s}
+  pan_subscriber: {limits: null}
+  tilt_subscriber: {limits: null}
 """
 
 
@@ -59,10 +61,7 @@ def main() -> None:
         generated, written = build_generated(folder / "generated"), build_handwritten(folder)
         compared = compare_traces(generated, written, options.trace)
         costs = {p: cycle_costs(p, folder, options.cycles) for p in (generated, written)}
-        tables = [
-            cost_table(costs[generated], costs[written], [compared]),
-            memory_table(generated, written, folder),
-        ]
+        tables = [cost_table(costs[generated], costs[written], [compared]), memory_table(generated, written, folder)]
     show("runtime", tables, options.write, command_line("runtime"))
 
 
@@ -74,21 +73,19 @@ def build_generated(folder: Path) -> Program:
     folder.mkdir()
     output = folder / "generated"
     (folder / "robot.tcf").write_text(ROBOT, encoding="utf-8")
-    files: list[str | Path] = [
-        "--tcf",
-        folder / "robot.tcf",
-        "--model",
-        JIWY / "model",
-        "--bindings",
-        JIWY / "jiwy.bindings.yaml",
-    ]
+    files = jiwy_files(folder / "robot.tcf")
     run([sys.executable, EPG, "generate", "jiwy", *files, "--output", output, "--source-dir", JIWY])
     kinds = sorted(path for path in (ROOT / "targets" / "components").iterdir() if path.is_dir())
     includes = [RUNTIME / "include", SOURCES, output, *kinds]
     names = ["-include", str(output / "jiwy_model_names.h")]
-    model = [compile_c(s, folder / "gm", [JIWY / "model"], ["-w", *names]) for s in model_sources()]
+    own = [compile_c(output / "jiwy_model_export.c", folder / "g", includes, ["-w", *names])]
+    own += [compile_c(s, folder / "gm", [JIWY / "model"], ["-w", *names]) for s in model_sources()]
+    restart = folder / "restart"
+    run([sys.executable, EPG, "model-variables", "jiwy_model", *own, "--output", restart])
+    export, *model = [restart / f"jiwy_model_{index}.o" for index in range(len(own))]
+    export = export.rename(restart / "jiwy_model_export.o")
     glue = [compile_c(output / name, folder / "g", includes, WARNINGS) for name in GLUE]
-    glue.append(compile_c(output / "jiwy_model_export.c", folder / "g", includes, ["-w", *names]))
+    glue += [compile_c(restart / "jiwy_model_export_variables.c", folder / "g", includes, WARNINGS), export]
     others = [compile_c(SOURCES / name, folder / "g", includes, WARNINGS) for name in ("generated.c", "driver.c")]
     shared = sorted([*(RUNTIME / "src").glob("*/*.c"), *(source for kind in kinds for source in kind.glob("*.c"))])
     library = [compile_c(source, folder / "r", includes, WARNINGS) for source in shared]
@@ -211,15 +208,12 @@ def memory_table(generated: Program, written: Program, folder: Path) -> Table:
     for program, title in ((generated, "generated"), (written, "by hand")):
         sums = [0, 0, 0, 0]
         for path in program.glue:
-            sizes = section_sizes(path)
-            sums = [a + b for a, b in zip(sums, sizes)]
-            rows.append([f"{title}: {path.stem}", *map(str, sizes)])
-        if len(program.glue) > 1:
-            rows.append([f"{title}: all", *map(str, sums)])
+            sums = [a + b for a, b in zip(sums, section_sizes(path))]
+        rows.append([title, *map(str, sums)])
     includes = [RUNTIME / "include"]
     sizes_program = link([compile_c(SOURCES / "sizes.c", folder / "s", includes, WARNINGS)], folder / "s/sizes")
     notes = [f"Bytes of the runtime's objects: {', '.join(run([sizes_program]).splitlines())}."]
-    return Table("Memory of the glue, bytes", ["object", "code", "constants", ".data", ".bss"], rows, notes)
+    return Table("Memory of the glue, bytes", ["program", "code", "constants", ".data", ".bss"], rows, notes)
 
 
 def section_sizes(path: Path) -> tuple[int, int, int, int]:

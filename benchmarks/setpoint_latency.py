@@ -16,12 +16,10 @@ import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from measure import ROOT, run
+from measure import ROOT, need, run
 from report import Table, arguments, command_line, show
 
-sys.path.insert(0, str(ROOT))
-
-from tests.emulator.toolchain import Missing, arm_gcc, node, pico_sdk, rp2040js
+from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js
 from tests.middlewares.xrce import latency as host
 from tests.platforms.pico.images import freertos_kernel
 from tests.platforms.pico.xrce import latency as pico
@@ -35,11 +33,7 @@ HEAD = ["target", "output delay", "steps", "in the next cycle", "min", "mean", "
 
 def main() -> None:
     options = arguments(__doc__, steps=1000, platforms=len(PLATFORMS))
-    try:
-        for need in (pico_sdk, arm_gcc, node, rp2040js, freertos_kernel, libraries):
-            need()
-    except Missing as missing:
-        raise SystemExit(str(missing)) from None
+    need(pico_sdk, arm_gcc, node, rp2040js, freertos_kernel, libraries)
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         build(folder)
@@ -52,9 +46,9 @@ def main() -> None:
             rows.append(row(PLATFORMS[platform], delay, pico.measure(image, options.steps)))
     notes = [
         "In control cycles of 1 ms, by default. Min to max: from the agent's publishing to the output, at "
-        "any phase of the cycle. From being given: from the moment at which the control side was given the value; "
-        "expected is 0 ... 1 cycle until the next tick, and what stands in the last column. In the next cycle: the "
-        "first that began after that moment; the rest came in one that had just begun, and had not read its setpoints.",
+        "any phase of the cycle. From being given: from the hand-over to the control side; expected is 0 ... 1 "
+        "cycle, and the last column. In the next cycle: the first that began after that moment; the rest came in "
+        "one that had just begun.",
         "In the cycle: from the tick to the level that acts, at a wrap of the PWM of 50 us. On the host, which has no "
         "PWM: from the begin of the cycle, which is the tick plus the system's lateness, to the actuator's write.",
     ]

@@ -8,20 +8,17 @@ STM32H743.  Instructions are counted from the entry of the tick's interrupt to i
 from __future__ import annotations
 
 import subprocess
-import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from statistics import fmean
 from typing import Any
 
-from measure import ROOT
+from measure import ROOT, need
 from report import Table, arguments, command_line, show
 
-sys.path.insert(0, str(ROOT))
-
-from tests.emulator.toolchain import Missing, arm_gcc, tool, unicorn
+from tests.emulator.toolchain import arm_gcc, tool, unicorn
 from tests.platforms.firmware.builds import PROCESSORS, build
 from tests.platforms.stm32.images import PARTS
 from tests.platforms.stm32.machine.machine import Machine
@@ -59,13 +56,7 @@ PROGRAMS = {
 
 def main() -> None:
     options = arguments(__doc__, cycles=300)
-    try:
-        unicorn()
-        arm_gcc()
-        for name in ("cmsis_device_h7", *PARTS):
-            tool(name)
-    except Missing as missing:
-        raise SystemExit(str(missing)) from None
+    need(unicorn, arm_gcc, *(partial(tool, name) for name in ("cmsis_device_h7", *PARTS)))
     costs = {title: cycle(program, options.cycles) for title, program in PROGRAMS.items()}
     show("stm32_cycle", [cycle_table(costs, options.cycles), size_table()], options.write, command_line("stm32_cycle"))
 

@@ -9,17 +9,14 @@ messages take between these boards.
 from __future__ import annotations
 
 import statistics
-import sys
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from measure import ROOT
+from measure import need
 from report import Table, arguments, command_line, show
 
-sys.path.insert(0, str(ROOT))
-
-from tests.emulator.toolchain import Missing, arm_gcc, node, pico_sdk, rp2040js
+from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js
 from tests.platforms.pico.closed_loop.robot import AXES
 from tests.platforms.pico.images import freertos_kernel
 from tests.platforms.pico.teleoperation.lags import Run, emulated, programs, simulated, simulators
@@ -31,11 +28,7 @@ HEAD = ["axis", "lag", "two Picos", "simulation, 1 ms", "ratio", "simulation, 2 
 
 def main() -> None:
     options = arguments(__doc__, seeds=3)
-    try:
-        for need in (pico_sdk, arm_gcc, node, rp2040js, freertos_kernel, libraries):
-            need()
-    except Missing as missing:
-        raise SystemExit(str(missing)) from None
+    need(pico_sdk, arm_gcc, node, rp2040js, freertos_kernel, libraries)
     images = programs()
     boards = [emulated(images, seed=seed) for seed in range(1, options.seeds + 1)]
     with tempfile.TemporaryDirectory() as folder:

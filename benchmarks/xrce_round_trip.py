@@ -24,7 +24,6 @@ from measure import ROOT, run
 from report import Table, arguments, command_line, show
 
 sys.path.insert(0, str(ROOT / "examples" / "ping_pong" / "peer"))
-sys.path.insert(0, str(ROOT))
 
 from summary import Run, Summary, summarise
 
@@ -38,16 +37,6 @@ EXAMPLE = ROOT / "examples" / "ping_pong"
 QOS = {"best effort": "best", "reliable": "default"}
 WARM_UP = 50
 PATIENCE = 1.0  # s, after which a ping without an answer counts as lost
-
-THESIS = (
-    ("thesis: Pico 2, bare metal", "1.92", "10.8"),
-    ("thesis: Pico 2, FreeRTOS", "3.55", "12.8"),
-    ("thesis: Nucleo-H743ZI, Zephyr", "5.39", ""),
-)
-"""Mean and largest time in ms of the thesis: boards on USB, agent and peer on a Raspberry Pi, QoS best effort.
-
-Reliable took 1 to 4 ms more.
-"""
 
 
 def example_peer() -> ModuleType:
@@ -111,13 +100,11 @@ def round_trips(folder: Path, count: int) -> Table:
                     except Missing:
                         continue
                     rows.append([board, agent, qos, f"{rate:g} Hz" if rate else "flat out", *cells(found)])
-    rows += [[name, "micro-ROS", "best effort", "", "", "", mean, "", "", "", "", most] for name, mean, most in THESIS]
-    head = ["board", "agent", "QoS", "rate", "count", "lost", "mean", "sd", "min", "median", "99%", "max"]
+    head = ["board", "agent", "QoS", "rate", "lost", "mean", "min", "median", "99%", "max"]
     notes = [
-        "All of it on one computer that does other things too, over UDP on its loopback interface; through eProsima's "
-        "agent a ping passes DDS as well, twice. What the measuring program takes, in Python, is part of it.",
-        "The rows of the thesis are other hardware: boards on USB, agent and peer on a Raspberry Pi. They say nothing "
-        "about how fast this is; they stand here for the order of size.",
+        "On one computer, over UDP on its loopback interface; through eProsima's agent a ping passes DDS as well, "
+        "twice. The measuring program, in Python, is part of it.",
+        "The thesis's Nucleo-H743ZI with Zephyr and micro-ROS took 5.39 ms on average, on other hardware.",
     ]
     return Table("Round trip over XRCE, ms", head, rows, notes)
 
@@ -179,8 +166,8 @@ def running(board: Path, address: str, reliable: bool) -> Iterator[None]:
 
 
 def cells(found: Summary) -> list[str]:
-    times = (found.mean, found.deviation, found.minimum, found.median, found.percentiles[1], found.maximum)
-    return [str(found.count), str(found.lost), *(f"{1000 * seconds:.2f}" for seconds in times)]
+    times = (found.mean, found.minimum, found.median, found.percentiles[1], found.maximum)
+    return [str(found.lost), *(f"{1000 * seconds:.2f}" for seconds in times)]
 
 
 if __name__ == "__main__":

@@ -15,7 +15,6 @@ import resource
 import shutil
 import statistics
 import subprocess
-import sys
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -23,8 +22,6 @@ from pathlib import Path
 
 from measure import JIWY, ROOT
 from report import Table, arguments, command_line, milliseconds, show
-
-sys.path.insert(0, str(ROOT))
 
 from tests.emulator.toolchain import Missing, arm_gcc
 from tests.zephyr.workspace import Workspace, build, c_library, run, workspace
@@ -141,21 +138,25 @@ def copy_files(built: Path, project: Path, board: str, here: Workspace) -> None:
     by_module = set(compiled(project / "build"))
     theirs = [here.base, *(module for module in here.modules if module != ROOT)]
     theirs += [folder for folder in built.iterdir() if folder.name != "epg"]
+    own = {path: command for path, command in compiled(built).items() if path not in by_module}
+    body = _sources({path: command for path, command in own.items() if not _is_below(path, theirs)}, theirs)
+    (project / "CMakeLists.txt").write_text(HEAD + TAIL + body, encoding="utf-8")
+    (project / "jiwy.h").unlink()
+    shutil.rmtree(project / "build")
+
+
+def _sources(commands: dict[str, str], theirs: Sequence[Path]) -> str:
+    """The lines of a CMakeLists.txt for the sources of ``commands``, without folders of headers inside ``theirs``."""
     body = ""
     folders: dict[str, None] = {}
-    for path, command in compiled(built).items():
-        if path in by_module or _is_below(path, theirs):
-            continue
+    for path, command in commands.items():
         body += f'target_sources(app PRIVATE "{path}")\n'
         named = re.findall(r"(?: -I|-isystem )(\S+)", command)
         folders |= dict.fromkeys(name for name in named if not _is_below(name, theirs))
         forced = re.findall(r"-include (\S+/epg/\S+)", command)
         if forced:
             body += f'set_source_files_properties("{path}" PROPERTIES COMPILE_OPTIONS "-w;-include;{forced[0]}")\n'
-    body += "".join(f'target_include_directories(app PRIVATE "{path}")\n' for path in folders)
-    (project / "CMakeLists.txt").write_text(HEAD + TAIL + body, encoding="utf-8")
-    (project / "jiwy.h").unlink()
-    shutil.rmtree(project / "build")
+    return body + "".join(f'target_include_directories(app PRIVATE "{path}")\n' for path in folders)
 
 
 def _is_below(path: str, folders: Sequence[Path]) -> bool:

@@ -9,19 +9,17 @@ cache, although this image runs from flash.
 from __future__ import annotations
 
 import random
-import sys
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import fmean
+from typing import NamedTuple
 
-from measure import ROOT
+from measure import need
 from pico_timing import extent, verdict
 from report import Table, arguments, command_line, show
 
-sys.path.insert(0, str(ROOT))
-
-from tests.emulator.toolchain import Missing, arm_gcc, node, rp2040js, tool
+from tests.emulator.toolchain import arm_gcc, node, rp2040js, tool
 from tests.platforms.pico.closed_loop.robot import PERIOD
 from tests.platforms.pico.timing.measure import Timing
 from tests.platforms.pico.xrce.board import AGENT_PORT, CONSOLE_PORT
@@ -83,13 +81,7 @@ class Measured:
 
 def main() -> None:
     options = arguments(__doc__, seeds=5, milliseconds=2000, loads=len(LOADS), cycles=200)
-    try:
-        workspace("rpi_pico")
-        c_library()
-        for need in (arm_gcc, node, rp2040js, lambda: tool("micro_xrce_dds_client")):
-            need()
-    except Missing as missing:
-        raise SystemExit(str(missing)) from None
+    need(lambda: workspace("rpi_pico"), c_library, arm_gcc, node, rp2040js, lambda: tool("micro_xrce_dds_client"))
     measured = {load: measure(load, options.seeds, options.milliseconds) for load in LOADS[: options.loads]}
     tables = [timing_table(measured, options.seeds, options.milliseconds), split_table(options.cycles)]
     show("zephyr_timing", tables, options.write, command_line("zephyr_timing"))
@@ -155,8 +147,8 @@ def timing_table(measured: dict[Load, Measured], seeds: int, milliseconds: int) 
     notes = [
         "Deviations from t0 + k T in cycles of 8 ns, smallest ... largest, and the share of cycles that deviate. "
         "Interrupt: entry of the tick's, against the earliest. Encoders: the start of each read, in that interrupt. "
-        "Cycle: its first instruction in the control thread, against the earliest; what is read in the thread deviates "
-        "as much. Locked: for how many microseconds no interrupt was served while outputs were written. Written: the "
+        "Cycle: its first instruction in the control thread, against the earliest. Locked: for how many microseconds "
+        "no interrupt was served while outputs were written. Written: the "
         "end of the last write to them, in microseconds from the interrupt's begin. Output: the PWM wrap (every 6,250 "
         "cycles) at which a level takes effect, against the wrap at which most do.",
         f"{seeds} USB hosts with other times of packets, {milliseconds / 1000:g} s each. An agent sends setpoints as "
@@ -170,8 +162,42 @@ def timing_table(measured: dict[Load, Measured], seeds: int, milliseconds: int) 
 # Parts of a cycle -----------------------------------------------------------------------------------------------------
 
 
+class Cost(NamedTuple):
+    """The mean cost of a part of a cycle: instructions, and processor cycles of 8 ns."""
+
+    instructions: float
+    cycles: float
+
+
 def split_table(count: int) -> Table:
     """The mean cost of each part of the cycles in which both axes move."""
+    spans, lines = passages(count)
+    ran = len(spans["tick"])
+    costs = {part: mean_cost(spans, names) for part, names in PARTS.items()}
+    outputs, tick = costs.pop("outputs"), mean_cost(spans, ("tick",))
+    reading = costs["reading in the interrupt"]
+    costs["tick to cycle"] = Cost(tick.instructions - reading.instructions, tick.cycles - reading.cycles)
+    whole = Cost(fmean(passage[2] for passage, _ in lines), fmean(passage[1] for passage, _ in lines))
+    known = Cost(*map(sum, zip(*costs.values())))
+    costs["rest"] = Cost(whole.instructions - known.instructions, whole.cycles - known.cycles)
+    costs["until the outputs are known"] = whole
+    costs["writing them, after the output delay"] = outputs
+    rows = [[part, f"{cost.instructions:.0f}", f"{0.008 * cost.cycles:.1f}"] for part, cost in costs.items()]
+    notes = [
+        f"Means of {ran} cycles in which both axes move, from the first instruction of the tick's interrupt on; what "
+        "interrupts a cycle counts in it. Tick to cycle: the rest of the interrupt, the semaphore, and the change of "
+        "threads.",
+        f"Until the outputs are known, a cycle touches {fmean(n for _, n in lines):.0f} lines of 8 bytes of the flash "
+        f"({max(n for _, n in lines)} at most), of the 2,048 that the RP2040's cache holds.",
+    ]
+    return Table("A control cycle of Zephyr on RP2040, simulated", ["part", "instructions", "us"], rows, notes)
+
+
+def passages(count: int) -> tuple[dict[str, list[list[int]]], list[tuple[list[int], int]]]:
+    """The passages of ``count`` cycles: of each function and of the tick, and the way to the outputs.
+
+    The way of each cycle has the number of lines of the flash that it touches.
+    """
     functions = [name for names in PARTS.values() for name in names]
     with ZephyrJiwy(elf=LOADS[0].image()) as jiwy:
         jiwy.home()
@@ -188,29 +214,14 @@ def split_table(count: int) -> Table:
             found = pico.call("span", name="path")
             if len(found["passages"]) == 1:
                 lines.append((found["passages"][0], found["flash_lines"]))
-        spans = {name: pico.call("span", name=name)["passages"] for name in [*functions, "tick"]}
+        return {name: pico.call("span", name=name)["passages"] for name in [*functions, "tick"]}, lines
+
+
+def mean_cost(spans: dict[str, list[list[int]]], names: tuple[str, ...]) -> Cost:
+    """The cost of the functions ``names`` together, for each tick."""
+    found = [passage for name in names for passage in spans[name]]
     ran = len(spans["tick"])
-
-    def mean(names: tuple[str, ...], column: int) -> float:
-        return sum(passage[column] for name in names for passage in spans[name]) / ran
-
-    costs = {part: [mean(names, column) for column in (2, 1)] for part, names in PARTS.items() if part != "outputs"}
-    reading = next(iter(costs.values()))
-    costs["tick to cycle"] = [mean(("tick",), column) - reading[n] for n, column in enumerate((2, 1))]
-    whole = [fmean(passage[column] for passage, _ in lines) for column in (2, 1)]
-    costs["rest"] = [whole[n] - sum(cost[n] for cost in costs.values()) for n in (0, 1)]
-    costs["until the outputs are known"] = whole
-    costs["writing them, after the output delay"] = [mean(PARTS["outputs"], column) for column in (2, 1)]
-    rows = [[part, f"{cost[0]:.0f}", f"{0.008 * cost[1]:.1f}"] for part, cost in costs.items()]
-    notes = [
-        f"Means of {ran} cycles in which both axes move, from the first instruction of the tick's interrupt on; what "
-        "interrupts a cycle counts in it. Tick to cycle: the rest of the interrupt, the semaphore, and the change of "
-        "threads.",
-        f"Until the outputs are known, a cycle touches {fmean(n for _, n in lines):.0f} lines of 8 bytes of the flash "
-        f"({max(n for _, n in lines)} at most), of the 2,048 that the RP2040's cache holds.",
-        SIMULATED,
-    ]
-    return Table("A control cycle of Zephyr on RP2040, simulated", ["part", "instructions", "us"], rows, notes)
+    return Cost(sum(passage[2] for passage in found) / ran, sum(passage[1] for passage in found) / ran)
 
 
 if __name__ == "__main__":

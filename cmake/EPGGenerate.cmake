@@ -31,7 +31,32 @@ function(_epg_generate result name folder)
     return()
   endif()
   file(REMOVE "${record}.stamp")
+  _epg_fingerprint(version) # of the code that runs now, even if it is edited meanwhile
+  # A run without a stamp may have read a file before it was edited.  The build would not notice this edit, because it is
+  # older than the build files.  Such a run is therefore repeated once.
+  set(before "")
+  foreach(attempt first second)
+    _epg_start(good "${name}" "${folder}" "${before}" ${ARGN})
+    if(NOT good OR EXISTS "${record}.stamp")
+      break()
+    endif()
+    _epg_include("${folder}" "${name}")
+    _epg_digest(before "${folder}")
+  endforeach()
+  set(${result} "${good}" PARENT_SCOPE)
+  if(good)
+    _epg_include("${folder}" "${name}")
+    _epg_configure_depends()
+  endif()
+endfunction()
 
+# _epg_start(<result> <name> <folder> <before> <argument>...)
+#
+# Starts the generator for a run, and for other targets of which a file has changed.  Writes the stamps of those that were
+# successful.  <before> is the digest of the run's files now, or "" if they are not known yet.  The other arguments are
+# those of _epg_generate().
+function(_epg_start result name folder before)
+  set(record "${CMAKE_BINARY_DIR}/CMakeFiles/epg/${name}")
   set(started "${record}.started")
   file(WRITE "${started}" "")
   set(command ${ARGN} --output "${folder}" --warnings "${record}.warnings.txt")
@@ -57,17 +82,25 @@ function(_epg_generate result name folder)
     if(EXISTS "${CMAKE_BINARY_DIR}/CMakeFiles/epg/${other}.done")
       get_property(arguments GLOBAL PROPERTY _EPG_RUN_${other})
       get_property(other_folder GLOBAL PROPERTY _EPG_FOLDER_${other})
-      _epg_write_stamp("${other}" "${other_folder}" "${started}" ${arguments})
+      _epg_write_stamp("${other}" "${other_folder}" "${started}" "" ${arguments})
       file(REMOVE "${CMAKE_BINARY_DIR}/CMakeFiles/epg/${other}.done")
     endif()
   endforeach()
   if(good)
-    _epg_write_stamp("${name}" "${folder}" "${started}" ${ARGN})
-    include("${folder}/${name}.cmake")
-    _epg_configure_depends()
+    _epg_write_stamp("${name}" "${folder}" "${started}" "${before}" ${ARGN})
   endif()
   file(REMOVE "${started}" "${record}.runs.txt")
 endfunction()
+
+# _epg_include(<folder> <name>)
+#
+# Sets the variables of the generated file <folder>/<name>.cmake.  Paths of EPG's own files in it begin with the variable
+# EPG_TARGETS_DIR, which must be set before.
+macro(_epg_include folder name)
+  _epg_data_folder(EPG_TARGETS_DIR)
+  string(APPEND EPG_TARGETS_DIR "/targets")
+  include("${folder}/${name}.cmake")
+endmacro()
 
 # _epg_is_current(<result> <name> <folder> <argument>...)
 #
@@ -81,33 +114,34 @@ function(_epg_is_current result name folder)
   file(READ "${stamp}" known)
   _epg_key(key ${ARGN})
   if(known MATCHES "^${key} ")
-    _epg_data_folder(data)
-    set(EPG_TARGETS_DIR "${data}/targets")
-    include("${folder}/${name}.cmake")
+    _epg_include("${folder}" "${name}")
     _epg_digest(digest "${folder}")
     if(known STREQUAL "${key} ${digest}")
       set(${result} TRUE PARENT_SCOPE)
-      set(EPG_DEPENDS "${EPG_DEPENDS}" PARENT_SCOPE)
-      set(EPG_FOLDERS "${EPG_FOLDERS}" PARENT_SCOPE)
+      foreach(variable EPG_DEPENDS EPG_FOLDERS EPG_ABSENT)
+        set(${variable} "${${variable}}" PARENT_SCOPE)
+      endforeach()
     endif()
   endif()
 endfunction()
 
-# _epg_write_stamp(<name> <folder> <started> <argument>...)
+# _epg_write_stamp(<name> <folder> <started> <before> <argument>...)
 #
-# Writes the stamp of a run that was successful and began when the file <started> was written.
-function(_epg_write_stamp name folder started)
-  _epg_data_folder(data)
-  set(EPG_TARGETS_DIR "${data}/targets")
-  include("${folder}/${name}.cmake")
-  # A file that was edited while the generator ran may have been read before or after the edit: write no stamp.
-  foreach(file IN LISTS EPG_DEPENDS)
-    if("${file}" IS_NEWER_THAN "${started}")
-      return()
-    endif()
-  endforeach()
-  _epg_key(key ${ARGN})
+# Writes the stamp of a run that was successful, began when the file <started> was written, and had files with the digest
+# <before> then.
+function(_epg_write_stamp name folder started before)
+  _epg_include("${folder}" "${name}")
   _epg_digest(digest "${folder}")
+  # A file that was edited while the generator ran may have been read before or after the edit: write no stamp.  The time
+  # of a file can also be in the future, because it is from a computer with another clock: the contents then decide.
+  if(NOT digest STREQUAL before)
+    foreach(file IN LISTS EPG_DEPENDS)
+      if("${file}" IS_NEWER_THAN "${started}")
+        return()
+      endif()
+    endforeach()
+  endif()
+  _epg_key(key ${ARGN})
   file(WRITE "${CMAKE_BINARY_DIR}/CMakeFiles/epg/${name}.stamp" "${key} ${digest}")
 endfunction()
 
@@ -179,17 +213,24 @@ endfunction()
 # arguments, the user's folders of targets, the Python interpreter and the version of EPG.
 function(_epg_key result)
   _epg_fingerprint(generator)
-  set(interpreter "")
-  if(EPG_PYTHON AND EXISTS "${EPG_PYTHON}")
-    file(TIMESTAMP "${EPG_PYTHON}" time "%s" UTC)
-    file(SIZE "${EPG_PYTHON}" size)
-    set(interpreter "${EPG_PYTHON} ${time} ${size}")
-  endif()
+  _epg_program(interpreter "${EPG_PYTHON}")
   _epg_wanted_python(wanted)
   # The folders count, not the way they are given: a variable here is an environment variable under <name>_connect.
   _epg_user_folders(roots)
   string(SHA256 key "${ARGN}\n${roots}\n${generator}\n${interpreter}\n${wanted}")
   set(${result} "${key}" PARENT_SCOPE)
+endfunction()
+
+# _epg_program(<result> <program>)
+#
+# Sets <result> to the path, time and size of a program, which an update changes; to "" if there is no such program.
+function(_epg_program result program)
+  set(${result} "" PARENT_SCOPE)
+  if(program AND EXISTS "${program}")
+    file(TIMESTAMP "${program}" time "%s" UTC)
+    file(SIZE "${program}" size)
+    set(${result} "${program} ${time} ${size}" PARENT_SCOPE)
+  endif()
 endfunction()
 
 # _epg_digest(<result> <folder>)
@@ -209,44 +250,70 @@ function(_epg_digest result folder)
     endif()
   endforeach()
   foreach(directory IN LISTS EPG_FOLDERS)
-    file(GLOB names RELATIVE "${directory}" "${directory}/*")
+    _epg_pattern(pattern "${directory}")
+    file(GLOB names RELATIVE "${directory}" "${pattern}/*")
     string(APPEND text "${names}\n")
   endforeach()
   _epg_user_folders(roots)
   foreach(root IN LISTS roots)
-    file(GLOB_RECURSE names RELATIVE "${root}" "${root}/*")
+    _epg_pattern(pattern "${root}")
+    file(GLOB_RECURSE names RELATIVE "${root}" "${pattern}/*")
     string(APPEND text "${names}\n")
   endforeach()
   string(SHA256 digest "${text}")
   set(${result} "${digest}" PARENT_SCOPE)
 endfunction()
 
+# _epg_pattern(<result> <path>)
+#
+# Sets <result> to a pattern for file(GLOB) that only <path> matches.
+function(_epg_pattern result path)
+  string(REGEX REPLACE "[[*?]" "[\\0]" pattern "${path}")
+  set(${result} "${pattern}" PARENT_SCOPE)
+endfunction()
+
+# _epg_entries(<result> <folder>)
+#
+# Sets <result> to all files and folders below <folder>, except temporary files of editors.
+function(_epg_entries result folder)
+  _epg_pattern(pattern "${folder}")
+  file(GLOB_RECURSE found LIST_DIRECTORIES true "${pattern}/*")
+  list(FILTER found EXCLUDE REGEX "/[.][^/]*$")
+  set(${result} "${found}" PARENT_SCOPE)
+endfunction()
+
 # _epg_fingerprint(<result>)
 #
 # Sets <result> to a hash that identifies this version of EPG.  For a wheel, pip's list of the hashes of its files is
-# read, else the files.  This is done once per configure run.
+# read, else all files of the Python package and the schemas.  A run reads files in targets/, too; the generated file
+# <name>.cmake lists them.  A new file there can take precedence over one of them, so the names of all files there are
+# part of the hash.  All of this is done once per configure run.
 function(_epg_fingerprint result)
   get_property(fingerprint GLOBAL PROPERTY _EPG_FINGERPRINT)
   if(NOT fingerprint)
     _epg_python_folder(python)
     _epg_data_folder(data)
+    _epg_pattern(package "${python}")
+    _epg_pattern(around "${data}")
     set(files "")
     set(record "")
     if(data STREQUAL "${python}/_data")
-      file(GLOB files "${python}/../epg-*.dist-info/RECORD" "${python}/../epg-*.dist-info/METADATA")
+      file(GLOB files "${package}/../epg-*.dist-info/RECORD" "${package}/../epg-*.dist-info/METADATA")
     endif()
     if(NOT files)
       set(record "${CMAKE_BINARY_DIR}/CMakeFiles/epg/generator.txt")
-      set(patterns "${data}/schemas/*.json")
-      # the folders of all modules and templates that `epg generate` can read
-      foreach(folder . catalog check cli documents emit emit/model emit/model/templates emit/templates messages models resolve system)
-        list(APPEND patterns "${python}/${folder}/*.py" "${python}/${folder}/*.j2")
-      endforeach()
-      file(GLOB files ${patterns})
+      file(GLOB_RECURSE files "${package}/*")
+      file(GLOB schemas "${around}/schemas/*.json") # not schemas/editor: no run reads those
+      list(APPEND files ${schemas})
+      list(FILTER files EXCLUDE REGEX "/(__pycache__/[^/]+|[.][^/]*)$") # bytecode, temporary files of editors
     endif()
     _epg_hash_of_files(fingerprint "${record}" ${files})
+    _epg_entries(names "${data}/targets")
+    string(SHA256 fingerprint "${fingerprint}\n${names}")
+    list(TRANSFORM names REPLACE "/[^/]*$" "" OUTPUT_VARIABLE folders) # faster than to ask whether each is a folder
+    list(REMOVE_DUPLICATES folders)
     set_property(GLOBAL PROPERTY _EPG_FINGERPRINT "${fingerprint}")
-    set_property(DIRECTORY "${CMAKE_SOURCE_DIR}" APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${files})
+    set_property(DIRECTORY "${CMAKE_SOURCE_DIR}" APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${files} ${folders})
   endif()
   set(${result} "${fingerprint}" PARENT_SCOPE)
 endfunction()
@@ -290,29 +357,41 @@ endfunction()
 
 # _epg_configure_depends()
 #
-# Makes a build configure again after a change of a file that was read or of a folder that was searched.  The caller
-# must have included <name>.cmake, which lists them.
+# Makes a build configure again after a change of a file that was read or of a folder that was searched, or after a file
+# has appeared that was missing.  The caller must have included <name>.cmake, which lists them.
 function(_epg_configure_depends)
   set(folders ${EPG_FOLDERS})
   _epg_user_folders(roots)
   foreach(root IN LISTS roots)
-    file(GLOB below LIST_DIRECTORIES true "${root}/*" "${root}/*/*")
-    foreach(path IN LISTS root below)
+    _epg_entries(entries "${root}")
+    foreach(path IN LISTS root entries)
       if(IS_DIRECTORY "${path}")
         list(APPEND folders "${path}")
       endif()
     endforeach()
   endforeach()
-  # A folder changes with each file that is written into it.  A folder around or below the build tree changes with every
-  # build, so watching it would configure again and again.
+  # A folder changes with each file that is written into it.  Those of the build tree change with every build, so watching
+  # them would configure again and again.
   set(watched "")
   foreach(folder IN LISTS folders)
-    string(FIND "${CMAKE_BINARY_DIR}/" "${folder}/" around)
     string(FIND "${folder}/" "${CMAKE_BINARY_DIR}/" below)
-    if(NOT around EQUAL 0 AND NOT below EQUAL 0)
+    if(NOT below EQUAL 0)
       list(APPEND watched "${folder}")
     endif()
   endforeach()
+  # A missing file cannot be watched by its time, and its folder may be one in which users edit files all the time.
+  # CMake looks for it at the beginning of each build, which takes as long as a start of CMake.
+  set(absent "")
+  foreach(file IN LISTS EPG_ABSENT)
+    get_filename_component(folder "${file}" DIRECTORY)
+    if(NOT folder IN_LIST watched)
+      _epg_pattern(pattern "${file}")
+      list(APPEND absent "${pattern}")
+    endif()
+  endforeach()
+  if(absent)
+    file(GLOB found CONFIGURE_DEPENDS ${absent})
+  endif()
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${EPG_DEPENDS} ${watched})
 endfunction()
 

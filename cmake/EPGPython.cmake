@@ -25,6 +25,9 @@ function(_epg_find_python result)
       set(found "${Python3_EXECUTABLE}")
     endif()
     set(remedy "Install it, or name it: cmake -DPython3_EXECUTABLE=<path> ...")
+    if(DEFINED ENV{PYTHONHOME})
+      string(APPEND remedy "\nThe environment variable PYTHONHOME is '$ENV{PYTHONHOME}'. If that is not the folder of this Python's library, no Python starts: unset PYTHONHOME")
+    endif()
     if(NOT found)
       message(FATAL_ERROR "EPG needs Python 3.10 or newer, but none was found.\n${remedy}")
     endif()
@@ -170,9 +173,19 @@ function(_epg_require function usage name unparsed missing)
   if(name IN_LIST ARGN)
     message(FATAL_ERROR "${function}(${name} ...): the first argument must be a name.${takes}")
   endif()
+  if(name MATCHES "^(.+),$")
+    message(FATAL_ERROR "${function}(${name} ...): CMake separates arguments by blanks: remove the commas.${takes}")
+  endif()
   if(unparsed)
     list(JOIN unparsed " " words)
-    message(FATAL_ERROR "${function}(${name}): unknown argument: ${words}.${takes}")
+    list(GET unparsed 0 first)
+    set(hint "")
+    string(REGEX REPLACE "=.*" "" keyword "${first}")
+    string(TOUPPER "${keyword}" keyword)
+    if(keyword MATCHES "^[A-Z_]+$" AND usage MATCHES "(^|[^A-Z_])${keyword} <")
+      set(hint "\nWrite '${keyword} <value>': keywords are in capitals, and have a blank behind them.")
+    endif()
+    message(FATAL_ERROR "${function}(${name}): unknown argument: ${words}.${hint}${takes}")
   endif()
   if(missing)
     list(JOIN missing ", " words)
@@ -198,7 +211,7 @@ endfunction()
 # _epg_check_folder_names()
 #
 # Stops with an error if the path of the source folder, of the build folder or of EPG contains a text with a special
-# meaning for CMake, Ninja or Make.  epg/check/names.py has the same rules.  Each source folder is checked once.
+# meaning for CMake, Ninja or Make.  epg/generator/check/names.py has the same rules.  Each source folder is checked once.
 function(_epg_check_folder_names)
   get_property(checked DIRECTORY PROPERTY _EPG_CHECKED_FOLDER_NAMES)
   if(checked STREQUAL CMAKE_CURRENT_SOURCE_DIR) # folders below inherit the property
@@ -238,20 +251,5 @@ Write project(<name> LANGUAGES ${language}) before the call of EPG.
 In a Zephyr application, choose the .tcf of a target for Zephyr: 'epg targets' lists them. Call epg_add_target() for another platform, and epg_add_model(), after find_package(Zephyr) and project().")
   elseif(NOT language IN_LIST languages)
     message(FATAL_ERROR "EPG: ${reason} needs ${language}: write project(${PROJECT_NAME} LANGUAGES ${languages} ${language})")
-  endif()
-endfunction()
-
-# _epg_exact_arithmetic(<target>)
-#
-# Sets the compiler options of a CMake target so that + - * / give the same bits on every processor.
-function(_epg_exact_arithmetic target)
-  target_compile_options(${target} PRIVATE
-    $<$<OR:$<C_COMPILER_ID:GNU,Clang,AppleClang,ARMClang>,$<CXX_COMPILER_ID:GNU,Clang,AppleClang,ARMClang>>:-ffp-contract=off>)
-  set_target_properties(${target} PROPERTIES
-    C_STANDARD 11 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF
-    CXX_STANDARD 17 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF)
-  if(TARGET zephyr_interface)
-    # This target has the flags that all code of a Zephyr image must share, such as those for the processor.
-    target_link_libraries(${target} PRIVATE zephyr_interface)
   endif()
 endfunction()

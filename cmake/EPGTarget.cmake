@@ -13,7 +13,8 @@
 #   BINDINGS        the bindings file: which component port belongs to which model port
 #   PLANT           the model of the robot, for a simulation; needs PLANT_BINDINGS
 #   PLANT_BINDINGS  the bindings of the plant
-#   IOC             the project file (.ioc) of CubeMX of the same program: EPG leaves its pins and timers alone
+#   IOC             the project file (.ioc) of CubeMX of the same program: EPG leaves its pins and timers alone.
+#                   A target on the platform firmware must not have it
 #   NODE            name of the ROS 2 node, instead of the one in the .tcf
 #   NAMESPACE       namespace of the ROS 2 node, instead of the one in the .tcf
 #   SET             other values of the .tcf, such as "control.period=2 ms"
@@ -111,9 +112,7 @@ function(epg_add_target name)
     _epg_connect_target("${name}" ${arguments})
   endif()
 
-  _epg_data_folder(data)
-  set(EPG_TARGETS_DIR "${data}/targets")
-  include("${output}/${name}.cmake")
+  _epg_include("${output}" "${name}")
   _epg_check_needs(good "${name}")
   if(NOT good)
     _epg_placeholder("${name}")
@@ -138,25 +137,25 @@ endfunction()
 #   <output>  folder of its generated files
 function(_epg_build_target name output)
   _epg_require_language(C "EPG")
-  _epg_data_folder(data)
-  set(EPG_TARGETS_DIR "${data}/targets")
-  include("${output}/${name}.cmake")
-  _epg_runtime_library("${data}/targets/runtime")
+  _epg_include("${output}" "${name}")
+  _epg_runtime_library("${EPG_TARGETS_DIR}/runtime")
   foreach(model IN LISTS EPG_MODELS)
-    _epg_model_library("${model}" "${output}")
+    _epg_model_library("${model}" "${output}" 1)
   endforeach()
   set(generated ${EPG_GENERATED_SOURCES})
   if(NOT COMMAND _epg_${EPG_PLATFORM}_before_build) # Zephyr compiles the sources of its platform with its own settings
     list(APPEND generated ${EPG_PLATFORM_SOURCES})
+    set(in_executable ${EPG_CLASS_SOURCES}) # with the settings of the SDK, as the port layer
   endif()
   list(TRANSFORM generated PREPEND "${output}/")
   add_library(${name} STATIC ${generated} ${EPG_COMPONENT_SOURCES})
-  target_include_directories(${name} PUBLIC "${output}" PRIVATE ${EPG_COMPONENT_INCLUDES})
+  target_include_directories(${name} PUBLIC "${output}" ${EPG_CLASS_INCLUDES} PRIVATE ${EPG_COMPONENT_INCLUDES})
+  target_sources(${name} INTERFACE ${in_executable})
   target_link_libraries(${name} PUBLIC epg_runtime ${EPG_MODELS})
   foreach(middleware IN LISTS EPG_MIDDLEWARES)
     _epg_middleware_library(${name} ${middleware})
   endforeach()
-  _epg_exact_arithmetic(${name})
+  _epg_compiler_options(${name})
   set_target_properties(${name} PROPERTIES EPG_PLATFORM "${EPG_PLATFORM}" EPG_PLATFORM_CMAKE "${EPG_PLATFORM_CMAKE}")
   add_library(EPG::${name} ALIAS ${name})
 
@@ -199,7 +198,7 @@ function(_epg_middleware_library name middleware)
     add_library(${library} STATIC EXCLUDE_FROM_ALL ${EPG_MIDDLEWARE_${middleware}_SOURCES})
     target_include_directories(${library} PUBLIC "${folder}")
     target_link_libraries(${library} PUBLIC epg_runtime)
-    _epg_exact_arithmetic(${library})
+    _epg_compiler_options(${library})
     # The middleware's own function _epg_middleware_<middleware>(<library>) links the other libraries that it needs.
     if(EXISTS "${folder}/middleware.cmake")
       include("${folder}/middleware.cmake")
@@ -227,7 +226,7 @@ function(_epg_runtime_library folder)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${folder}/src/${part}")
     add_library(${library} STATIC EXCLUDE_FROM_ALL ${sources})
     target_include_directories(${library} PUBLIC "${folder}/include")
-    _epg_exact_arithmetic(${library})
+    _epg_compiler_options(${library})
   endforeach()
   target_link_libraries(epg_runtime PUBLIC epg_communication)
   target_link_libraries(epg_communication PUBLIC epg_runtime)

@@ -9,7 +9,10 @@ if sys.version_info < (3, 10):
 if not __package__:  # Started by its path: Python has put the package's folder into sys.path, not the folder above it.
     from os.path import abspath, dirname
 
-    sys.path[0] = dirname(dirname(abspath(__file__)))
+    package = dirname(abspath(__file__))
+    if sys.path and abspath(sys.path[0]) == package:  # Not with -P, and not if a file `._pth` states the path.
+        del sys.path[0]
+    sys.path.insert(0, dirname(package))
 
 from epg.cli.main import main_and_exit
 

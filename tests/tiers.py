@@ -2,7 +2,7 @@
 """The tier of each test, and the groups of test files that ctest runs as one test.
 
 ``tests/tiers.txt`` names the tests of ``check_all`` and ``check_long``; all others belong to ``check``.
-``tests/costs.txt`` lists the time that each file takes.
+``tests/costs.txt`` lists the CPU time that each file takes.
 
 >>> table = read_table("check_all  tests/ros2\\ncheck_long tests/ros2/test_a.py::test_hours\\n")
 >>> table.tier("tests/ros2/test_a.py::test_minutes[3]"), table.tier("tests/ros2/test_a.py::test_hours[3]")
@@ -11,16 +11,23 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 TESTS = Path(__file__).resolve().parent
 TIERS = ("check", "check_all", "check_long")
 ALONE = 15.0
-"""Limit in seconds: ctest runs a file that takes longer as a test by itself.  A start of pytest takes one second."""
+"""Limit in CPU seconds: ctest runs a costlier file as a test by itself.  A start of pytest takes one second."""
+TOGETHER = 60.0
+"""Limit in CPU seconds for files that share a test of ctest, so that no test is the last one for long."""
+CHECK_CPU = 440
+"""Limit in CPU seconds for all files of ``check`` in tests/costs.txt."""
+CHECK_ALL_CPU = 4500
+"""Limit in CPU seconds for all files of the target ``check_all``, which also runs those of ``check``."""
 
 
 @dataclass(frozen=True)
@@ -28,6 +35,8 @@ class Table:
     """The beginnings of test names, as pytest writes them, each with its tier."""
 
     tiers: Mapping[str, str]
+    real_time: frozenset[str] = frozenset()
+    """Files whose programs run in real time.  They have a better scheduling priority, and ctest runs one at a time."""
     alone: frozenset[str] = frozenset()
     """Files beside which ctest runs no other test."""
 
@@ -38,7 +47,9 @@ class Table:
 
     def tiers_in(self, file: str) -> set[str]:
         """The tiers of the tests in a file."""
-        return {self.tier(file)} | {tier for path, tier in self.tiers.items() if path.startswith(f"{file}::")}
+        return {self.tier(file)} | {
+            tier for path, tier in self.tiers.items() if path.startswith((f"{file}::", f"{file}["))
+        }
 
 
 @dataclass(frozen=True)
@@ -48,33 +59,66 @@ class Group:
     name: str
     tier: str
     cost: float
-    """Time for all files, in seconds."""
+    """CPU time for all files, in seconds."""
     files: tuple[str, ...]
+    real_time: bool = False
+    """Whether ctest begins it early, and runs no other group with this mark at the same time."""
     alone: bool = False
     """Whether ctest runs no other test at the same time."""
 
 
 def begins(test: str, path: str) -> bool:
-    """True if ``path`` names the test or contains it: a folder, a file, a function or a parameter."""
-    return test == path or (test.startswith(path) and test[len(path)] in "/:[")
+    """True if ``path`` names the test or contains it: a folder, a file or a function, with a parameter or without.
+
+    >>> begins("tests/test_a.py::test_b[freertos-3]", "tests/test_a.py[freertos]")
+    True
+    """
+    place, _, parameter = path.partition("[")
+    function, _, parameters = test.partition("[")
+    if parameter and f"-{parameter.removesuffix(']')}-" not in f"-{parameters.removesuffix(']')}-":
+        return False
+    return function == place or (function.startswith(place) and function[len(place)] in "/:")
+
+
+def unused(tiers: Table, tests: Sequence[str]) -> list[str]:
+    """Beginnings in the table that name none of ``tests``, which are all tests of their files."""
+    files = {test.partition("::")[0] for test in tests}
+    return [
+        path
+        for path in tiers.tiers
+        if re.split(r"::|\[", path)[0] in files and not any(begins(test, path) for test in tests)
+    ]
 
 
 def read_table(text: str) -> Table:
-    """Reads lines ``tier path`` and ``alone file``.  Ignores empty lines and lines that begin with ``#``.
+    """Reads lines ``tier path``, ``real_time file`` and ``alone file``.  Ignores empty lines and comments (``#``).
 
-    Raises :class:`ValueError` for another tier.
+    A list in braces stands for one line for each of its names.  Raises :class:`ValueError` for another tier.
+
+    >>> sorted(read_table("check_long tests/a/{test_b.py,test_c.py}[freertos]").tiers)
+    ['tests/a/test_b.py[freertos]', 'tests/a/test_c.py[freertos]']
     """
-    tiers, alone = {}, set()
+    tiers: dict[str, str] = {}
+    marked: dict[str, set[str]] = {"real_time": set(), "alone": set()}
     for line in text.splitlines():
         if line and not line.startswith("#"):
-            tier, path = line.split(maxsplit=1)
-            if tier == "alone":
-                alone.add(path)
-                continue
-            if tier not in TIERS:
+            tier, names = line.split(maxsplit=1)
+            if tier in marked:
+                marked[tier].update(_expanded(names))
+            elif tier in TIERS:
+                tiers |= dict.fromkeys(_expanded(names), tier)
+            else:
                 raise ValueError(f"tests/tiers.txt: there is no tier {tier!r}: {line}")
-            tiers[path] = tier
-    return Table(tiers, frozenset(alone))
+    return Table(tiers, frozenset(marked["real_time"]), frozenset(marked["alone"]))
+
+
+def _expanded(names: str) -> list[str]:
+    """All names for which ``names`` stands: ``a{b,c}d`` are ``abd`` and ``acd``."""
+    begin, brace, rest = names.partition("{")
+    if not brace:
+        return [names]
+    choices, _, end = rest.partition("}")
+    return [name for choice in choices.split(",") for name in _expanded(begin + choice + end)]
 
 
 def table() -> Table:
@@ -83,7 +127,7 @@ def table() -> Table:
 
 
 def read_costs(text: str) -> dict[tuple[str, str], float]:
-    """Seconds by tier and file, from lines ``tier seconds file``."""
+    """CPU seconds by tier and file, from lines ``tier seconds file``."""
     rows = (line.split(maxsplit=2) for line in text.splitlines() if line and not line.startswith("#"))
     return {(tier, file): float(seconds) for tier, seconds, file in rows}
 
@@ -93,24 +137,45 @@ def groups(files: Iterable[str], tiers: Table, costs: Mapping[tuple[str, str], f
     together: dict[tuple[str, str], list[str]] = defaultdict(list)
     for file in sorted(files):
         for tier in sorted(tiers.tiers_in(file)):
-            own = costs.get((tier, file), 0.0) > ALONE or file in tiers.alone
+            own = costs.get((tier, file), 0.0) > ALONE or file in tiers.real_time | tiers.alone
             name = file.removesuffix(".py") if own else str(Path(file).parent.as_posix())
             together[name, tier].append(file)
     result = []
-    for (name, tier), members in together.items():
-        words = [word.removeprefix("test_") for word in name.split("/")]
-        suffix = {"check": "", "check_all": ".all", "check_long": ".long"}[tier]
+    for (name, tier, part), members in _parts(together, costs).items():
+        suffix = (f".{part}" if part > 1 else "") + {"check": "", "check_all": ".all", "check_long": ".long"}[tier]
         cost = sum(costs.get((tier, file), 1.0) for file in members)
-        result.append(Group(".".join(words) + suffix, tier, cost, tuple(members), not tiers.alone.isdisjoint(members)))
+        marks = [not marked.isdisjoint(members) for marked in (tiers.real_time, tiers.alone)]
+        result.append(Group(name.replace("/", ".") + suffix, tier, cost, tuple(members), *marks))
     return sorted(result, key=lambda group: (TIERS.index(group.tier), -group.cost, group.name))
 
 
-def main() -> int:
-    """Prints ``name|tier|cost|alone|file,file`` per group, for tests/CMakeLists.txt."""
+def _parts(
+    together: Mapping[tuple[str, str], Sequence[str]], costs: Mapping[tuple[str, str], float]
+) -> dict[tuple[str, str, int], list[str]]:
+    """Splits the files of each name and tier, in their order, into parts that cost at most :data:`TOGETHER`."""
+    result: dict[tuple[str, str, int], list[str]] = {}
+    for (name, tier), files in together.items():
+        part, cost = 1, 0.0
+        for file in files:
+            more = costs.get((tier, file), 1.0)
+            if cost and cost + more > TOGETHER:
+                part, cost = part + 1, 0.0
+            cost += more
+            result.setdefault((name, tier, part), []).append(file)
+    return result
+
+
+def all_groups() -> list[Group]:
+    """The groups of all test files, as tests/costs.txt says."""
     files = [f"tests/{path.relative_to(TESTS).as_posix()}" for path in TESTS.rglob("test_*.py")]
-    costs = read_costs((TESTS / "costs.txt").read_text(encoding="utf-8"))
-    for group in groups(files, table(), costs):
-        print(f"{group.name}|{group.tier}|{group.cost:.0f}|{group.alone}|{','.join(group.files)}")
+    return groups(files, table(), read_costs((TESTS / "costs.txt").read_text(encoding="utf-8")))
+
+
+def main() -> int:
+    """Prints ``name|tier|cost|real_time|alone|file,file`` per group, for tests/CMakeLists.txt."""
+    for group in all_groups():
+        marks = f"{group.real_time}|{group.alone}"
+        print(f"{group.name}|{group.tier}|{group.cost:.0f}|{marks}|{','.join(group.files)}")
     return 0
 
 

@@ -33,6 +33,11 @@ uint64_t epg_port_time_ns(void)
     return now_ns;
 }
 
+uint32_t epg_port_boot_id(void)
+{
+    return 1;
+}
+
 void epg_port_wait_until(uint64_t time_ns)
 {
     now_ns = time_ns; /* is not called: there is no output delay */

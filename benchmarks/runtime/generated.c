@@ -35,5 +35,9 @@ bool glue_status(epg_status_t *status)
 
 void glue_request(bool enable)
 {
-    epg_control_request(jiwy_target.control, enable);
+    if (enable) {
+        epg_control_enable(jiwy_target.control, EPG_ENABLE_ANY);
+    } else {
+        epg_stop(jiwy_target.control, EPG_STOP_PROGRAM);
+    }
 }

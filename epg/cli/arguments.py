@@ -4,12 +4,17 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from epg.generator.source import Span
+
 if TYPE_CHECKING:
-    from epg.project import Request
+    from epg.generator.diagnostics import Diagnostics
+    from epg.generator.project import Request
 
 
 def add_target_arguments(parser: argparse.ArgumentParser, *, required: bool) -> None:
@@ -47,13 +52,26 @@ def add_settings(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_time_range(parser: argparse.ArgumentParser, begin: str, until: str) -> None:
+    """Adds ``--from`` and ``--until``, whose meanings are ``begin`` and ``until``."""
+    parser.add_argument("--from", type=float, default=-math.inf, dest="begin", metavar="SECONDS", help=begin)
+    parser.add_argument("--until", type=float, default=math.inf, metavar="SECONDS", help=until)
+
+
 def user_roots() -> list[Path]:
     """The folders of ``EPG_TARGETS_PATH``."""
     return [Path(folder) for folder in os.environ.get("EPG_TARGETS_PATH", "").split(os.pathsep) if folder]
 
 
+def refuse_existing(files: Iterable[Path | None], force: bool, diagnostics: Diagnostics) -> None:
+    """Reports those of the output files that exist, unless ``force`` overwrites them.  None: the file is not wanted."""
+    for file in files:
+        if file is not None and file.exists() and not force:
+            diagnostics.error("file-exists", Span(str(file)), "this file exists", hint="--force overwrites it")
+
+
 def request_of(arguments: argparse.Namespace, name: str) -> Request:
     """The request from the arguments of :func:`add_target_arguments`."""
-    from epg.project import request_of_options
+    from epg.generator.project import request_of_options
 
     return request_of_options(name, vars(arguments), arguments.settings, user_roots())

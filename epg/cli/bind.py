@@ -10,8 +10,8 @@ from pathlib import Path
 
 from epg.cli.arguments import user_roots
 from epg.cli.report import to_json
-from epg.diagnostics import Diagnostics
-from epg.source import Span
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.source import Span
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -22,13 +22,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
-    from epg.catalog.catalog import load_catalog
-    from epg.documents.text_file import read_text
+    from epg.edit.bindings_text import new_bindings, updated_bindings
+    from epg.edit.ends import references_of
     from epg.edit.yaml_edit import CannotEdit
-    from epg.emit.bindings import new_bindings, updated_bindings
-    from epg.models import load_model
-    from epg.project import Request, load_configuration
-    from epg.resolve.matching import match_ports
+    from epg.generator.catalog.catalog import load_catalog
+    from epg.generator.documents.text_file import read_text
+    from epg.generator.documents.yaml_file import parse_yaml
+    from epg.generator.importers import load_model
+    from epg.generator.project import Request, load_configuration
+    from epg.generator.resolve.matching import match_ports
 
     request = Request("bind", options.tcf, options.model, Path(), user_roots=user_roots())
     catalog = load_catalog(request.roots, diagnostics)
@@ -36,12 +38,13 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     model = load_model(options.model, diagnostics)
     diagnostics.stop_if_errors()
     assert configuration is not None and model is not None
-    matches = match_ports(model, configuration.components)
     if options.update:
         if options.output is None:
             sys.stderr.write("epg bind: --update needs the file to update: add -o FILE\n")
             return 2
         text = diagnostics.checked(read_text(options.output, diagnostics))
+        bound = references_of(parse_yaml(text, str(options.output), Diagnostics()))
+        matches = match_ports(model, configuration.components, bound)
         try:
             change = diagnostics.checked(updated_bindings(text, str(options.output), model, matches, diagnostics))
         except CannotEdit as problem:
@@ -57,6 +60,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         else:
             _print_changes(change.added, change.removed, change.open)
         return 0
+    matches = match_ports(model, configuration.components)
     text = new_bindings(model, matches)
     if options.output is None:
         sys.stdout.write(text)

@@ -8,18 +8,18 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from epg.bootstrap import cache_folder
 from epg.cli.arguments import user_roots
 from epg.cli.main import MissingProgram
 from epg.cli.system import read_system
-from epg.connect.build.messages import Messages, plain
+from epg.connect.build.build_messages import Messages, plain
 from epg.connect.build.process import Process
-from epg.data import data_folder, targets_roots
-from epg.diagnostics import Diagnostics
-from epg.source import Span
-from epg.tools.find_tool import Surroundings, find_tool
-from epg.tools.remedy import get_it, problem_of
-from epg.tools.tools import load_tools
+from epg.generator.bootstrap import cache_folder
+from epg.generator.data import data_folder, targets_roots
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.source import Span
+from epg.generator.tools.find_tool import Surroundings, find_tool
+from epg.generator.tools.remedy import get_it, problem_of
+from epg.generator.tools.tools import load_tools
 
 PROJECT, BUILD = "simulation", "simulation/build"
 """The project and its build folder, in the folder of the results."""

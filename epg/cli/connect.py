@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from epg.cli.arguments import add_target_arguments, request_of, user_roots
 from epg.cli.report import format_diagnostics, to_json
 from epg.cli.system import is_system
-from epg.diagnostics import Diagnostics
+from epg.generator.diagnostics import Diagnostics
 
 if TYPE_CHECKING:
     from epg.connect.projects import Job
@@ -48,36 +48,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
-    from epg.connect.session import Session
-
-    given = [options.tcf, options.model, options.bindings]
-    if any(given) and (not all(given) or options.folder is not None):
-        sys.stderr.write("epg connect: name a FOLDER, or give --tcf, --model and --bindings\n")
+    problem = _problem(options)
+    if problem:
+        sys.stderr.write(f"epg connect: {problem}\n")
         return 2
-    if not 0 <= options.port <= 65535:
-        sys.stderr.write("epg connect: --port must be from 0 to 65535\n")
-        return 2
-    if (options.terminal and options.live) or (options.run is not None and not options.live):
-        sys.stderr.write("epg connect: --run needs --live, and --live needs the page, not --terminal\n")
-        return 2
-    folder = Path(os.path.abspath(options.folder or "."))
-    system = folder if is_system(folder) else None
-    jobs = [_job(options)] if all(given) else []
-    if not jobs and system is None:
-        jobs = _jobs(folder, options.name, diagnostics)
-        diagnostics.stop_if_errors()
-        system = _system_in(folder, diagnostics) if not jobs else None
-    diagnostics.stop_if_errors()
-    model = None
-    project = jobs[0].source_dir if jobs and not all(given) else None
-    if system is not None:
-        project = folder if folder.is_dir() else system.parent
-        jobs = _system_jobs(system, project, options.name, diagnostics)
-    elif not jobs:
-        _check_model(folder, diagnostics)
-        model = folder
-    diagnostics.stop_if_errors()
-    session = Session(jobs, folder=project, model=model, system=system, user_roots=user_roots())
+    session = _session(options, diagnostics)
     if options.terminal:
         from epg.connect.terminal.dialog import run as run_terminal
 
@@ -92,10 +67,47 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         session.runs.close()
 
 
+def _problem(options: argparse.Namespace) -> str:
+    """The reason why the options are not possible together; empty if they are."""
+    given = [options.tcf, options.model, options.bindings]
+    if any(given) and (not all(given) or options.folder is not None):
+        return "name a FOLDER, or give --tcf, --model and --bindings"
+    if not 0 <= options.port <= 65535:
+        return "--port must be from 0 to 65535"
+    if (options.terminal and options.live) or (options.run is not None and not options.live):
+        return "--run needs --live, and --live needs the page, not --terminal"
+    return ""
+
+
+def _session(options: argparse.Namespace, diagnostics: Diagnostics) -> Session:
+    """The session with the target of the options, or with the project, the system or the model in their folder."""
+    from epg.connect.session import Session
+
+    if options.tcf:
+        return Session([_job(options)], user_roots=user_roots())
+    folder = Path(os.path.abspath(options.folder or "."))
+    system = folder if is_system(folder) else None
+    jobs = _jobs(folder, options.name, diagnostics) if system is None else []
+    diagnostics.stop_if_errors()
+    if system is None and not jobs:
+        system = _system_in(folder, diagnostics)
+        diagnostics.stop_if_errors()
+    if system is not None:
+        project = folder if folder.is_dir() else system.parent
+        jobs = _system_jobs(system, project, options.name, diagnostics)
+        diagnostics.stop_if_errors()
+        return Session(jobs, folder=project, system=system, user_roots=user_roots())
+    if jobs:
+        return Session(jobs, folder=jobs[0].source_dir, user_roots=user_roots())
+    _check_model(folder, diagnostics)
+    diagnostics.stop_if_errors()
+    return Session([], model=folder, user_roots=user_roots())
+
+
 def _go_live(session: Session, program: Path | None, diagnostics: Diagnostics) -> None:
     """Lets the page begin with the tab Live.  Runs ``program``, and connects with it.  Mistakes are reported."""
     from epg.connect.session import Refused
-    from epg.source import Span
+    from epg.generator.source import Span
 
     span = session.without_console
     if span is not None:
@@ -184,7 +196,7 @@ def _job(options: argparse.Namespace) -> Job:
 def _system_in(folder: Path, diagnostics: Diagnostics) -> Path | None:
     """The system in ``folder``, None if there is none.  Several are reported."""
     from epg.connect.projects import find_systems
-    from epg.source import Span
+    from epg.generator.source import Span
 
     systems = find_systems(folder)
     if len(systems) > 1:
@@ -201,7 +213,7 @@ def _system_jobs(path: Path, folder: Path, name: str | None, diagnostics: Diagno
     """
     from epg.cli.system import target_of
     from epg.connect.projects import system_jobs
-    from epg.source import Span
+    from epg.generator.source import Span
     from epg.system.load_system import parse_system
 
     found = Diagnostics()
@@ -224,15 +236,15 @@ def _jobs(folder: Path, name: str | None, diagnostics: Diagnostics) -> list[Job]
     The target ``name`` comes first.  If there is no such target, this is reported.
     """
     from epg.connect.projects import find_jobs, jobs_of_model
-    from epg.diagnostics import did_you_mean
-    from epg.source import Span
+    from epg.generator.diagnostics import did_you_mean
+    from epg.generator.source import Span
 
-    found = Diagnostics()
-    jobs = find_jobs(folder, found)
-    if found.has_errors:
-        diagnostics.items.extend(found)
+    problems = Diagnostics()
+    jobs = find_jobs(folder, problems)
+    if problems.has_errors:
+        diagnostics.items.extend(problems)
     else:  # print warnings before the page opens: the session can last for hours
-        sys.stderr.write(format_diagnostics(found))
+        sys.stderr.write(format_diagnostics(problems))
     if not jobs and not diagnostics.has_errors:
         jobs = jobs_of_model(folder)
     if name is not None and jobs:
@@ -248,7 +260,7 @@ def _jobs(folder: Path, name: str | None, diagnostics: Diagnostics) -> list[Job]
 def _check_model(folder: Path, diagnostics: Diagnostics) -> None:
     """Reports the problems of a folder that holds neither a target nor a model that can be used."""
     from epg.connect.projects import report_no_target
-    from epg.models import load_model
+    from epg.generator.importers import load_model
 
     problems = Diagnostics()
     load_model(folder, problems)

@@ -7,8 +7,9 @@ import argparse
 import sys
 from pathlib import Path
 
-from epg.cli.robot import add_robot_arguments, robot_of, write_files
-from epg.diagnostics import Diagnostics
+from epg.cli.ros_target import add_robot_arguments, robot_of, write_files
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.source import Span
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -30,6 +31,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.ros.plotjuggler import plotjuggler_layout
     from epg.ros.plots import plots_of
     from epg.ros.ros2_control import control_launch_file, controllers_file, hardware_of, xacro_file
+    from epg.runs.robot import DamagedDescription, report_damaged
 
     if not (options.plotjuggler or options.foxglove or options.ros2_control):
         sys.stderr.write("epg describe: add --plotjuggler, --foxglove or --ros2-control\n")
@@ -37,7 +39,11 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     robot = robot_of(options, diagnostics)
     diagnostics.stop_if_errors()
     assert robot is not None
-    plots = plots_of(robot)
+    try:
+        plots = plots_of(robot)
+    except DamagedDescription as problem:
+        report_damaged(Span(str(robot.file)), str(problem), diagnostics)
+        return 1
     files = {}
     if options.plotjuggler:
         files[f"{robot.name}.plotjuggler.xml"] = plotjuggler_layout(robot.name, plots)

@@ -17,21 +17,21 @@ from importlib import metadata
 from pathlib import Path
 
 import epg
-from epg import bootstrap
 from epg.cli.arguments import user_roots
 from epg.cli.report import to_json
-from epg.data import targets_roots
-from epg.dataclass import dataclass
-from epg.diagnostics import Diagnostics
-from epg.tools.find_tool import Finding, Surroundings, find_tool, read_cmake_cache
-from epg.tools.remedy import command_for, package_manager, privileged
-from epg.tools.tools import Tool, load_tools
+from epg.generator import bootstrap
+from epg.generator.data import targets_roots
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.tools.find_tool import Finding, Surroundings, find_tool, read_cmake_cache
+from epg.generator.tools.remedy import command_for, package_manager, privileged
+from epg.generator.tools.tools import Tool, load_tools
 
 HOST = "host"
 
 
 @dataclass(frozen=True)
-class Item:
+class ReportedTool:
     """One tool or package in the report.
 
     ``status`` is "found", "missing", "old" if a newer version is needed, "wrong" if a variable names something else, or
@@ -78,7 +78,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     if options.project:
         return _report_project(list(found.values()), options.json)
     items = [
-        Item("python", "Python", HOST, True, "found", platform.python_version(), sys.executable),
+        ReportedTool("python", "Python", HOST, True, "found", platform.python_version(), sys.executable),
         *(_package("generator", *package, required=True) for package in bootstrap.requirements("generator").values()),
         *(_package(g, *package, required=False) for g in _USES for package in bootstrap.requirements(g).values()),
         *found.values(),
@@ -103,7 +103,7 @@ def _wanted(tools: Mapping[str, Tool], project: Path | None) -> Mapping[str, Too
     if project is None:
         return tools
     bootstrap.ensure()  # reading the project's files needs the package for YAML
-    from epg.connect.build.tools import tools_of_project
+    from epg.connect.build.build_tools import tools_of_project
 
     wanted = {name: tools[name] for name in tools_of_project(project) if name in tools}
     return {
@@ -111,7 +111,7 @@ def _wanted(tools: Mapping[str, Tool], project: Path | None) -> Mapping[str, Too
     }
 
 
-def _report_project(items: list[Item], as_json: bool) -> int:
+def _report_project(items: list[ReportedTool], as_json: bool) -> int:
     """Prints the tools that one project needs.  The exit status depends only on these."""
     if as_json:
         sys.stdout.write(to_json({"items": [asdict(item) for item in items]}))
@@ -145,25 +145,25 @@ _USES = {
 """The purposes of optional packages, by group."""
 
 
-def _package(group: str, name: str, oldest: tuple[int, ...], *, required: bool) -> Item:
+def _package(group: str, name: str, oldest: tuple[int, ...], *, required: bool) -> ReportedTool:
     """The report on a Python package, which can be installed in the interpreter or in EPG's cache."""
     note = _USES.get(group, "")
     old = ""
     for source, places in (("", sys.path), ("EPG's cache", [str(bootstrap.package_folder(group))])):
-        found = next(iter(metadata.distributions(name=name, path=places)), None)
-        if found is not None and bootstrap.version_numbers(found.version) >= oldest:
-            path = Path(str(found.locate_file(""))).as_posix()
-            return Item(name.lower(), name, HOST, required, "found", found.version, path, source, note)
-        old = found.version if found is not None else old
+        distribution = next(iter(metadata.distributions(name=name, path=places)), None)
+        if distribution is not None and bootstrap.version_numbers(distribution.version) >= oldest:
+            path = Path(str(distribution.locate_file(""))).as_posix()
+            return ReportedTool(name.lower(), name, HOST, required, "found", distribution.version, path, source, note)
+        old = distribution.version if distribution is not None else old
     remedy = f"{sys.executable} -m pip install {name}"
     if importlib.util.find_spec("pip") is not None and not os.environ.get("EPG_NO_INSTALL"):
-        return Item(name.lower(), name, HOST, required, "later", old, note=note, remedy=remedy)
+        return ReportedTool(name.lower(), name, HOST, required, "later", old, note=note, remedy=remedy)
     if package_manager() == "apt" and group not in ("ros", "mcap"):  # Debian has no packages of these groups
         remedy = f"{privileged('apt')}apt install python3-{'yaml' if name == 'PyYAML' else name.lower()}"
-    return Item(name.lower(), name, HOST, required, "old" if old else "missing", old, note=note, remedy=remedy)
+    return ReportedTool(name.lower(), name, HOST, required, "old" if old else "missing", old, note=note, remedy=remedy)
 
 
-def _item(finding: Finding, where: Surroundings, tools: Mapping[str, Tool]) -> Item:
+def _item(finding: Finding, where: Surroundings, tools: Mapping[str, Tool]) -> ReportedTool:
     """The report on a tool: its place and version, or the command that installs it."""
     tool = finding.tool
     if finding.status == "wrong":
@@ -180,7 +180,7 @@ def _item(finding: Finding, where: Surroundings, tools: Mapping[str, Tool]) -> I
         note = "its version is not known: --run starts the programs that this folder names, to read their versions"
     if tool.optional and not finding.path:
         note = f"{tool.optional}; {note}"
-    return Item(
+    return ReportedTool(
         name=tool.name,
         title=tool.title,
         needed_for=tool.needed_for,
@@ -194,7 +194,7 @@ def _item(finding: Finding, where: Surroundings, tools: Mapping[str, Tool]) -> I
     )
 
 
-def _lines(items: Sequence[Item]) -> Iterable[str]:
+def _lines(items: Sequence[ReportedTool]) -> Iterable[str]:
     """The lines of the report.  Items for the same purpose are together; those for the host come first."""
     width = max(len(f"{item.title} {item.version}") for item in items)
     for group in sorted({item.needed_for for item in items}, key=lambda name: (name != HOST, name)):

@@ -1,23 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg explain``: shows the wire of a port: model, conversion, component, peripheral, pins, C symbols."""
+"""``epg explain``: shows the wire of a port: model, conversion, component, peripheral, pins, C symbols.
+
+It also explains the messages of EPG by their ids.  These have hyphens, which names of ports and components do not have.
+"""
 
 from __future__ import annotations
 
 import argparse
 import json
+import re
 import sys
+import textwrap
 from pathlib import Path
 from typing import Any
 
 from epg.cli.arguments import add_target_arguments, request_of
+from epg.cli.messages import Entry, find_entry, read_page
 from epg.cli.report import to_json
-from epg.diagnostics import Diagnostics, did_you_mean
-from epg.emit.hardware import divider_text
-from epg.source import Span
+from epg.generator.diagnostics import Diagnostics, did_you_mean
+from epg.generator.emit.hardware import divider_text
+from epg.generator.source import Span
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("port", help="port of the model, or component")
+    parser.add_argument("port", help="port of the model, component, or id of a message")
     parser.add_argument(
         "--build",
         type=Path,
@@ -29,35 +35,67 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+    id = options.port.strip("[]")
+    if "-" in id:
+        entry = find_entry(id)
+        if entry is not None:
+            sys.stdout.write(to_json(_data(id, entry)) if options.json else _explanation(id, entry))
+            return 0
+        if not (options.tcf or options.build):
+            hint = did_you_mean(id, (entry.id for entry in read_page()), "ids of messages")
+            diagnostics.error("unknown-port", Span.of_argument(options.port), f"EPG has no message '{id}'", hint=hint)
+            return 1
     if options.tcf and options.model and options.bindings:
         descriptions = [_from_files(options, diagnostics)]
     else:
         descriptions = _from_build(options.build or Path(), diagnostics)
+    return _explain_port(options, descriptions, diagnostics)
+
+
+def _explain_port(options: argparse.Namespace, descriptions: list[dict[str, Any]], diagnostics: Diagnostics) -> int:
+    """Shows the wires of a port or component in all targets that have it.  Returns the exit status."""
     found = [(d, wire) for d in descriptions for wire in _wires(d, options.port)]
     if not found:
-        names = {w["port"] for d in descriptions for w in _all(d)} | {c for d in descriptions for c in d["components"]}
-        for description in descriptions:
-            if options.port in description["unconnected"]:
-                print(f"{options.port}: output of {description['model']['name']}, unconnected")
-                return 0
-        span = Span.of_argument(options.port)
-        hint = did_you_mean(options.port, names, "ports and components")
-        diagnostics.error("unknown-port", span, f"there is no port or component '{options.port}'", hint=hint)
-        return 1
+        return _without_wire(options.port, descriptions, diagnostics)
     if options.json:
         sys.stdout.write(to_json([{"target": d["name"], **wire, "resources": _hardware(d, wire)} for d, wire in found]))
-        return 0
-    print("\n\n".join(_text(description, wire) for description, wire in found))
+    else:
+        print("\n\n".join(_text(description, wire) for description, wire in found))
     return 0
+
+
+def _without_wire(port: str, descriptions: list[dict[str, Any]], diagnostics: Diagnostics) -> int:
+    """Says that an output is unconnected, or reports that there is no such port.  Returns the exit status."""
+    model = next((d["model"]["name"] for d in descriptions if port in d["unconnected"]), None)
+    if model is not None:
+        print(f"{port}: output of {model}, unconnected")
+        return 0
+    names = {w["port"] for d in descriptions for w in _all(d)} | {c for d in descriptions for c in d["components"]}
+    hint = did_you_mean(port, names, "ports and components")
+    diagnostics.error("unknown-port", Span.of_argument(port), f"there is no port or component '{port}'", hint=hint)
+    return 1
+
+
+def _explanation(id: str, entry: Entry) -> str:
+    """The entry of a message on the page of errors, as plain text."""
+    data = _data(id, entry)
+    example = f"\n\n{data['example']}" if entry.example else ""
+    return f"{textwrap.fill(data['text'], 100)}{example}\n"
+
+
+def _data(id: str, entry: Entry) -> dict[str, str]:
+    """An entry of the page of errors, without the links of the page, which lead nowhere in a terminal."""
+    text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", entry.text)
+    return {"id": id, "text": text, "example": entry.example}
 
 
 def _from_files(options: argparse.Namespace, diagnostics: Diagnostics) -> dict[str, Any]:
     """The description of a target that is made from its files, without a build."""
     from epg.cli.generate import mistakes_in_templates
-    from epg.emit.application import Emitter
-    from epg.emit.cmake import PathNames
-    from epg.emit.description import describe
-    from epg.project import load_application
+    from epg.generator.emit.application import Emitter
+    from epg.generator.emit.cmake import PathNames
+    from epg.generator.emit.description import describe
+    from epg.generator.project import load_application
 
     request = request_of(options, options.name)
     app = diagnostics.checked(load_application(request, diagnostics))
@@ -68,7 +106,7 @@ def _from_files(options: argparse.Namespace, diagnostics: Diagnostics) -> dict[s
 
 def _from_build(path: Path, diagnostics: Diagnostics) -> list[dict[str, Any]]:
     """The descriptions of the generated targets below ``path``, or the one in the file ``path``."""
-    from epg.ros.robot import description_files
+    from epg.runs.robot import description_files
 
     result = []
     for file in [path] if path.is_file() else description_files(path):

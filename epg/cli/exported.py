@@ -7,7 +7,7 @@ import argparse
 import os
 from pathlib import Path
 
-from epg.diagnostics import Diagnostics
+from epg.generator.diagnostics import Diagnostics
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -51,8 +51,8 @@ def _forget_people(configuration: Path) -> bool:
 
     The file is replaced atomically.  Returns True if it contained such data.
     """
-    from epg.emit.leftovers import replace_file
-    from epg.models.personal import without_personal_data
+    from epg.generator.emit.leftovers import replace_file
+    from epg.generator.models.personal import without_personal_data
 
     try:
         before = configuration.read_bytes()

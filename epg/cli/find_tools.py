@@ -12,15 +12,15 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
-from epg import bootstrap
 from epg.cli.arguments import user_roots
 from epg.cli.report import to_json
-from epg.data import targets_roots
-from epg.diagnostics import Diagnostics
-from epg.tools.find_tool import Finding, Surroundings, find_tool
-from epg.tools.project_version import choose_version
-from epg.tools.remedy import get_it, problem_of
-from epg.tools.tools import Tool, load_tools
+from epg.generator import bootstrap
+from epg.generator.data import targets_roots
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.tools.find_tool import Finding, Surroundings, find_tool
+from epg.generator.tools.project_version import choose_version
+from epg.generator.tools.remedy import get_it, problem_of
+from epg.generator.tools.tools import Tool, load_tools
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

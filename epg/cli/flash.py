@@ -9,17 +9,17 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from epg import bootstrap
 from epg.cli.arguments import user_roots
-from epg.data import targets_roots
-from epg.diagnostics import Diagnostics
-from epg.tools.find_tool import Surroundings
-from epg.tools.remedy import get_it
-from epg.tools.tools import Tool, load_tools
+from epg.generator import bootstrap
+from epg.generator.data import targets_roots
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.tools.find_tool import Surroundings
+from epg.generator.tools.remedy import get_it
+from epg.generator.tools.tools import Tool, load_tools
 
 if TYPE_CHECKING:
     from epg.cli.main import MissingProgram
-    from epg.system.flash import Job
+    from epg.system.flash import FlashJob
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -40,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.cli.report import to_json
     from epg.cli.system import target_of
-    from epg.source import Span
+    from epg.generator.source import Span
     from epg.system.check_system import check_system
     from epg.system.flash import Flasher, UnusableTool, flashing_of, plan
     from epg.system.images import images_of
@@ -82,7 +82,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     return 0
 
 
-def _programs(jobs: list[Job], *, dry_run: bool) -> dict[str, str]:
+def _programs(jobs: list[FlashJob], *, dry_run: bool) -> dict[str, str]:
     """The programs of the tools that the jobs need.  A dry run does not need them on this computer."""
     from epg.system.flash import program_of
 

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 
 from epg.cli.arguments import add_target_arguments, request_of, user_roots
 from epg.cli.output import add_output_arguments, update_folder, write_warnings
-from epg.diagnostics import Diagnostics, UserError
+from epg.generator.diagnostics import Diagnostics, UserError
 
 if TYPE_CHECKING:
-    from epg.project import Request
+    from epg.generator.project import Request
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -30,8 +30,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 @contextmanager
 def mistakes_in_templates(user_roots: Sequence[Path], diagnostics: Diagnostics) -> Iterator[None]:
     """Reports a mistake in a template of the user's own kinds and platforms.  Any other exception is a bug in EPG."""
-    from epg.emit.template import NOT_UTF_8, mistake_in_template
-    from epg.source import Span
+    from epg.generator.emit.template import NOT_UTF_8, mistake_in_template
+    from epg.generator.source import Span
 
     try:
         yield
@@ -62,9 +62,9 @@ def _request(options: argparse.Namespace, diagnostics: Diagnostics) -> Request:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
-    from epg.emit.cmake import PathNames
-    from epg.emit.outputs import application_outputs
-    from epg.project import load_application
+    from epg.generator.emit.cmake import PathNames
+    from epg.generator.emit.outputs import application_outputs
+    from epg.generator.project import load_application
 
     request = _request(options, diagnostics)
     app = diagnostics.checked(load_application(request, diagnostics))

@@ -8,8 +8,8 @@ import sys
 from pathlib import Path
 
 from epg.cli.output import add_output_arguments, update_folder, write_warnings
-from epg.diagnostics import Diagnostics
-from epg.source import Span
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.source import Span
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -21,11 +21,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
-    from epg.check.model import check_instances, check_model_names
-    from epg.check.target_names import check_library_name, check_paths
-    from epg.emit.cmake import PathNames
-    from epg.emit.outputs import model_outputs
-    from epg.models import load_model
+    from epg.generator.check.model import check_instances, check_model_names
+    from epg.generator.check.target_names import check_library_name, check_paths
+    from epg.generator.emit.cmake import PathNames
+    from epg.generator.emit.outputs import model_outputs
+    from epg.generator.importers import load_model
 
     caller = Span(options.caller or "command line")
     check_library_name(options.name, caller, diagnostics)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from epg.cli.arguments import user_roots
 from epg.cli.output import add_output_arguments, update_folder, write_warnings
-from epg.diagnostics import Diagnostics
+from epg.generator.diagnostics import Diagnostics
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -24,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.cli.system import system_of, target_of
-    from epg.emit.cmake import PathNames
+    from epg.generator.emit.cmake import PathNames
     from epg.system.check_system import check_system
     from epg.system.simulation import part_outputs, simulation_outputs
 

@@ -7,12 +7,12 @@ import argparse
 import sys
 from pathlib import Path
 
-from epg.catalog.catalog import load_catalog
 from epg.cli.arguments import add_settings, request_of, user_roots
 from epg.cli.report import to_json
 from epg.cli.system import is_system, read_system
-from epg.diagnostics import Diagnostics
-from epg.project import Request
+from epg.generator.catalog.catalog import load_catalog
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.project import Request
 
 PICTURES = ("application", "schedule", "wiring")
 
@@ -46,7 +46,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     else:
         text = _flow(options, request, title, diagnostics)
     if options.output is not None:
-        from epg.emit.writer import write_outputs
+        from epg.generator.emit.writer import write_outputs
 
         write_outputs(options.output.parent, {options.output.name: text})
     elif options.json:
@@ -64,9 +64,9 @@ def _system(path: Path, diagnostics: Diagnostics) -> str:
 
 def _wiring(request: Request, title: str, diagnostics: Diagnostics) -> str:
     """The picture of the wiring.  It depends only on the ``.tcf``, so that no model is needed."""
+    from epg.generator.project import load_configuration
+    from epg.generator.resolve.resolve import allocate_hardware
     from epg.graph.wiring import draw_wiring
-    from epg.project import load_configuration
-    from epg.resolve.resolve import allocate_hardware
 
     configuration = load_configuration(request, load_catalog(request.roots, diagnostics), diagnostics)
     configuration = diagnostics.checked(configuration)
@@ -79,10 +79,10 @@ def _wiring(request: Request, title: str, diagnostics: Diagnostics) -> str:
 
 
 def _flow(options: argparse.Namespace, request: Request, title: str, diagnostics: Diagnostics) -> str:
-    from epg.emit.application import Emitter
+    from epg.generator.emit.application import Emitter
+    from epg.generator.project import load_application
     from epg.graph.application import draw_application
     from epg.graph.schedule import draw_schedule
-    from epg.project import load_application
 
     app = diagnostics.checked(load_application(request, diagnostics))
     if options.what == "schedule":

@@ -10,31 +10,24 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from epg.cli.arguments import add_time_range
 from epg.cli.plot import check_picture
-from epg.diagnostics import Diagnostics, did_you_mean
-from epg.source import Span
+from epg.generator.diagnostics import Diagnostics, did_you_mean
+from epg.generator.source import Span
 
 if TYPE_CHECKING:
-    from epg.check.motors import Motor
-    from epg.identify.fit import Fit, Value
-    from epg.identify.plant import Plant
+    from epg.generator.check.motors import Motor
+    from epg.identify.bound_plant import BoundPlant
+    from epg.identify.fit import Fit, FittedValue
     from epg.identify.samples import Samples
-    from epg.ros.recording import Recording
+    from epg.runs.recording import Recording
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("run", type=Path, metavar="RUN", help="a CSV file, or a folder that record or simulate wrote")
     parser.add_argument("--duty", required=True, metavar="NAME", help="the signal that drives the motor")
     parser.add_argument("--position", required=True, metavar="NAME", help="the signal of its position")
-    parser.add_argument(
-        "--from",
-        type=float,
-        default=-math.inf,
-        dest="begin",
-        metavar="SECONDS",
-        help="use the recording from this time",
-    )
-    parser.add_argument("--until", type=float, default=math.inf, metavar="SECONDS", help="use it until this time")
+    add_time_range(parser, "use the recording from this time", "use it until this time")
     parser.add_argument(
         "--dead-zone",
         action="store_true",
@@ -53,22 +46,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
-    from epg import bootstrap
+    from epg.generator import bootstrap
 
     if bool(options.plant) != bool(options.plant_bindings) or (options.write and not options.plant):
         sys.stderr.write("epg identify: --plant and --plant-bindings belong together, and --write needs both\n")
         return 2
     bootstrap.ensure("plot")
+    from epg.identify.bound_plant import load_plant
     from epg.identify.fit import fit
     from epg.identify.judge import judge_fit, judge_samples
     from epg.identify.picture import plot_fit
-    from epg.identify.plant import load_plant
     from epg.identify.samples import samples_of
-    from epg.ros.recording import load_recording
+    from epg.runs.recording import read_recording
 
     output = options.output or Path(f"{options.run.resolve().stem}-{options.duty.rpartition('.')[2]}.png")
     check_picture(output, diagnostics)
-    recording = load_recording(options.run, diagnostics)
+    recording = read_recording(options.run, diagnostics)
     plant = load_plant(options.plant, options.plant_bindings, diagnostics) if options.plant else None
     motor = _motor(plant, options, diagnostics) if plant is not None else None
     diagnostics.stop_if_errors()
@@ -81,16 +74,16 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     file = str(options.run)
     judge_samples(samples, options.position, options.duty, file, diagnostics)
     diagnostics.stop_if_errors()
-    found = fit(samples, dead_zone=options.dead_zone)
+    fitted = fit(samples, dead_zone=options.dead_zone)
     unit = plant.unit(motor) if plant is not None and motor is not None else ""
-    values = _values(found, unit, options.dead_zone)
+    values = _values(fitted, unit, options.dead_zone)
     title = f"{options.run.name}: " + ", ".join(f"{name} {value} {of}" for name, value, _, of in values[:3])
-    plot_fit(samples, found, (options.position, options.duty), unit, title, output)
-    judge_fit(found, samples, file, diagnostics)
+    plot_fit(samples, fitted, (options.position, options.duty), unit, title, output)
+    judge_fit(fitted, samples, file, diagnostics)
     if diagnostics.has_errors:
         sys.stderr.write(f"epg identify: {output} shows the measured and the simulated curve\n")
         return 1
-    result = _Result(found, samples, values, output)
+    result = _Result(fitted, samples, values, output)
     if plant is None or motor is None:
         result.print(options, {}, {}, "")
         return 0
@@ -102,14 +95,11 @@ def _rows(recording: Recording, options: argparse.Namespace, diagnostics: Diagno
     import numpy as np
 
     for name, option in ((options.duty, "--duty"), (options.position, "--position")):
-        if name not in recording.signals:
-            message = f"'{name}' is not in {recording.path}"
-            hint = did_you_mean(name, recording.signals, "signals")
-            diagnostics.error("unknown-recorded-signal", Span.of_argument(name, option), message, hint=hint)
+        recording.check(name, option, diagnostics)
     diagnostics.stop_if_errors()
     driven, moved = recording.signals[options.duty], recording.signals[options.position]
     time, position = np.array(moved.time), np.array(moved.value)
-    duty = _held(np.array(driven.time), np.array(driven.value), time)
+    duty = np.array(driven.at(moved.time))
     enabled = recording.signals.get("enabled")
     if options.duty.startswith("outputs."):
         message = f"'{options.duty}' is the duty that the model wants: jog and dead times give the actuator another one"
@@ -117,7 +107,7 @@ def _rows(recording: Recording, options: argparse.Namespace, diagnostics: Diagno
         diagnostics.warning("identify-wanted-duty", Span.of_argument(options.duty, "--duty"), message, hint=hint)
     if enabled is not None and options.duty.startswith("outputs."):
         # The model of a disabled target still computes a duty, but its actuators are safe.
-        duty = duty * (_held(np.array(enabled.time), np.array(enabled.value), time) > 0.5)
+        duty = duty * (np.array(enabled.at(moved.time)) > 0.5)
     chosen = (time >= max(options.begin, driven.time[0])) & (time <= options.until)
     time, position, duty = time[chosen], position[chosen], duty[chosen]
     fresh = np.concatenate(([True], np.diff(time) > 0.0)) if len(time) else np.array([], dtype=bool)
@@ -128,15 +118,9 @@ def _rows(recording: Recording, options: argparse.Namespace, diagnostics: Diagno
     return time, position, duty
 
 
-def _held(time: Any, value: Any, at: Any) -> Any:
-    import numpy as np
-
-    return value[np.maximum(np.searchsorted(time, at, side="right") - 1, 0)]
-
-
-def _motor(plant: Plant, options: argparse.Namespace, diagnostics: Diagnostics) -> Motor | None:
+def _motor(plant: BoundPlant, options: argparse.Namespace, diagnostics: Diagnostics) -> Motor | None:
     """The motor of the plant that the recorded duty drives."""
-    from epg.identify.plant import motor_for
+    from epg.identify.bound_plant import motor_for
 
     motors = plant.bindings.motors
     if options.motor is not None:
@@ -165,14 +149,14 @@ def _values(fit: Fit, unit: str, dead_zone: bool) -> list[tuple[str, str, str, s
     ]
 
 
-def _rounded(found: Value, factor: float) -> tuple[str, str]:
+def _rounded(fitted: FittedValue, factor: float) -> tuple[str, str]:
     """A value and its error, both to the second significant digit of the error.
 
-    >>> from epg.identify.fit import Value
-    >>> _rounded(Value(32.36571, 0.06792), 1.0), _rounded(Value(0.0, 0.0), 1.0)
+    >>> from epg.identify.fit import FittedValue
+    >>> _rounded(FittedValue(32.36571, 0.06792), 1.0), _rounded(FittedValue(0.0, 0.0), 1.0)
     (('32.37', '0.14'), ('0', 'at its limit'))
     """
-    value, error = found.value * factor, 2.0 * found.error * factor
+    value, error = fitted.value * factor, 2.0 * fitted.error * factor
     if not error:
         return f"{value:.4g}", "at its limit"
     digits = max(0, 1 - math.floor(math.log10(error)))
@@ -235,12 +219,14 @@ class _Result:
         sys.stdout.write(to_json(data))
 
 
-def _change(result: _Result, plant: Plant, motor: Motor, options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+def _change(
+    result: _Result, plant: BoundPlant, motor: Motor, options: argparse.Namespace, diagnostics: Diagnostics
+) -> int:
     """Prints the changes of the plant's parameters, and writes them if the user wants it and they are correct."""
-    from epg.check.formulas import FormulaError
     from epg.edit.yaml_edit import CannotEdit
-    from epg.emit.leftovers import replace_file
-    from epg.identify.plant import NoSolution, changed_text, load_plant, solved, wanted_values
+    from epg.generator.check.formulas import FormulaError
+    from epg.generator.emit.leftovers import replace_file
+    from epg.identify.bound_plant import NoSolution, changed_text, load_plant, solved, wanted_values
 
     file = options.plant_bindings
     try:

@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from epg.cli.arguments import user_roots
-from epg.cli.robot import write_files
+from epg.cli.ros_target import write_files
 from epg.cli.system import is_system, read_system
-from epg.diagnostics import Diagnostics
-from epg.source import Span
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.source import Span
 
 if TYPE_CHECKING:
-    from epg.ros.robot import Robot
+    from epg.runs.robot import Robot
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -75,11 +75,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.cli.report import to_json
-    from epg.ros.agents import Wiring, check_target_names, plan_agents
+    from epg.ros.agents import AgentSetup, check_target_names, plan_agents
     from epg.ros.launch_file import FILE_NAME, launch_file
     from epg.ros.programs import ProgramRequest, plan_programs
-    from epg.ros.robot import load_robots
     from epg.ros.systemd_units import Installation, unit_files
+    from epg.runs.robot import load_robots
     from epg.system.robots import boards_of, robots_of
 
     robots: list[Robot] = []
@@ -104,7 +104,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     given["--board"] = boards | given["--board"]
     check_target_names(robots, given, diagnostics)
     paths = given["--program"]
-    wiring = Wiring(given["--board"], given["--device"], options.port, paths)
+    wiring = AgentSetup(given["--board"], given["--device"], options.port, paths)
     agents = plan_agents(robots, wiring, diagnostics)
     request = ProgramRequest(paths, given["--remap"], options.output, options.port)
     programs = plan_programs(robots, request, diagnostics)

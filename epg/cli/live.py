@@ -5,20 +5,22 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import signal
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from epg.diagnostics import Diagnostics
-from epg.source import Span
+from epg.cli.progress import StopRequest
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.source import Span
 
 if TYPE_CHECKING:
-    from epg.live.client import Client
-    from epg.live.rows import Recording, Sink
+    from epg.live.client import Client, TargetDescription
+    from epg.live.port import SerialPort
+    from epg.live.rows import File, Recorder, Stream
     from epg.live.screen import Screen
+    from epg.live.udp import UdpPort
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -49,6 +51,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="LINE",
         help="a command of the console to send first; can be repeated",
     )
+    parser.add_argument(
+        "--unattended", action="store_true", help="confirms --send 'enable unattended', which is without a lease"
+    )
     parser.add_argument("--duration", type=float, metavar="SECONDS", help="length; default: until Ctrl-C")
     parser.add_argument("--csv", type=Path, metavar="FILE", help="also writes the rows to a CSV file")
     parser.add_argument("--mcap", type=Path, metavar="FILE", help="also writes the rows for PlotJuggler and Foxglove")
@@ -58,71 +63,39 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--keep", type=Path, metavar="FILE", help="writes the changed parameters into the bindings FILE, and ends"
     )
+    parser.add_argument(
+        "--key",
+        type=Path,
+        metavar="FILE",
+        help="a file with the key of udp:HOST:PORT; the key is kept for the next time",
+    )
     parser.add_argument("--force", action="store_true", help="overwrite these files")
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.edit.yaml_edit import CannotEdit
-    from epg.live.client import Client, Lost, Refused
-    from epg.live.open import open_port
+    from epg.live.client import CommandRefused, Lost
     from epg.live.port import PortError
-    from epg.live.rows import Recording, Stream
-    from epg.live.screen import Screen, Values
-    from epg.live.udp import PortTaken, disable, is_udp
+    from epg.live.udp import PortLocked, PortTaken
 
     if options.port is None:
         return _list(options)
-    for file in (options.csv, options.mcap, options.record):
-        if file is not None and file.exists() and not options.force:
-            diagnostics.error("file-exists", Span(str(file)), "this file exists", hint="--force overwrites it")
-    if options.record is not None and (options.signals is not None or options.every != 1):
-        message = "a recording for a replay has all ports of the model in every control cycle"
-        option = "--signals" if options.signals is not None else "--every"
-        hint = f"remove {option}, or record with --csv or --mcap"
-        diagnostics.error("record-all", Span.of_argument(str(options.record), "--record"), message, hint=hint)
-    kept = diagnostics.checked(_bindings(options.keep, diagnostics)) if options.keep is not None else ""
-    diagnostics.stop_if_errors()
+    kept = _checked(options, diagnostics)
     relay = _Relay()
     try:
-        if options.send[:1] == ["disable"] and is_udp(options.port):
-            disable(options.port)  # this acts at once, also while another program uses the target
-        with open_port(options.port, options.baud) as port:
-            client = Client(port, relay.told, relay.numbered)
-            try:
-                names = _chosen(client, options)
-                values = Values(len(names))
-                shows = sys.stdin.isatty() and sys.stdout.isatty() and not options.json and not options.keep
-                with _sinks(options, client, names) as sinks:
-                    recording = Recording(Stream(names), [*sinks, values] if shows else sinks)
-                    _start(recording, client, names, options)
-                    for line in options.send:
-                        answer = client.command("enable leased" if line == "enable" else line)
-                        if not shows and not options.json:
-                            print("\n".join(answer), flush=True)
-                    end = time.monotonic() + options.duration if options.duration is not None else float("inf")
-                    if shows:
-                        relay.screen = Screen(client, names, values, recording, relay.faults)
-                        relay.screen.run(end)
-                    elif options.duration is not None or not (options.send or options.keep):
-                        relay.wait(client, recording, end)
-                    if names and not relay.lost:
-                        client.stop_stream()
-                    recording.drain()
-                if not options.json and names:
-                    stream = recording.stream
-                    print(f"{stream.rows} rows, {stream.dropped} dropped, {client.damaged} damaged frames")
-                if options.record is not None and recording.stream.dropped:
-                    sys.stderr.write(_DROPPED)
-                if not relay.lost and (options.keep is not None or not options.json):
-                    _keep(client, options, kept)
-            finally:
-                client.stop()
-    except PortError as problem:
-        if isinstance(problem, PortTaken) and options.send == ["disable"]:
-            print("ok disable")
+        _prepare(options)
+        try:
+            port = _open(options)
+        except (PortTaken, PortLocked):
+            if options.send != ["disable"]:
+                raise
+            print("ok disable")  # the target has confirmed it before
             return 0
+        with port:
+            _talk(port, options, relay, kept)
+    except PortError as problem:
         diagnostics.error("live-port", Span(str(options.port)), str(problem), hint=problem.hint)
-    except Refused as problem:
+    except CommandRefused as problem:
         return _failed(
             options, f"the target refused it: {problem}", "the command 'help' lists the commands, 'ports' the names"
         )
@@ -130,14 +103,157 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         return _failed(options, f"the bindings were not changed: {problem}", "write the parameters into the file")
     except Lost as problem:
         relay.lost = relay.lost or str(problem)
-    if relay.lost:
-        hint = (
-            "the firmware needs the console on this port; reset the board, look at the cable; with a UART, check --baud"
-        )
-        if is_udp(options.port):
-            hint = "look at the program and at the network, and connect again"
-        return _failed(options, relay.lost, hint)
-    return 0
+    return _failed(options, relay.lost, _hint_if_lost(options.port)) if relay.lost else 0
+
+
+def _checked(options: argparse.Namespace, diagnostics: Diagnostics) -> str:
+    """The text of the bindings of ``--keep``, else empty.  Stops after reporting options that are not possible."""
+    from epg.cli.arguments import refuse_existing
+
+    refuse_existing((options.csv, options.mcap, options.record), options.force, diagnostics)
+    if options.record is not None and (options.signals is not None or options.every != 1):
+        message = "a recording for a replay has all ports of the model in every control cycle"
+        option = "--signals" if options.signals is not None else "--every"
+        hint = f"remove {option}, or record with --csv or --mcap"
+        diagnostics.error("record-all", Span.of_argument(str(options.record), "--record"), message, hint=hint)
+    _check_unattended(options, diagnostics)
+    kept = diagnostics.checked(_bindings(options.keep, diagnostics)) if options.keep is not None else ""
+    diagnostics.stop_if_errors()
+    return kept
+
+
+def _prepare(options: argparse.Namespace) -> None:
+    """Keeps the key, and disables the target at once, also while another program uses it.
+
+    :raises PortError: the target does not answer, or the key cannot be used
+    """
+    from epg.live.udp import disable, is_udp
+    from epg.live.udp_keys import keep_key
+
+    if options.key is not None:
+        keep_key(options.port, _text_of(options.key))
+    if options.send[:1] == ["disable"] and is_udp(options.port):
+        disable(options.port)
+
+
+def _talk(port: SerialPort | UdpPort, options: argparse.Namespace, relay: _Relay, kept: str) -> None:
+    """All work with the open port.  ``kept`` is the text of the bindings.
+
+    :raises Refused: the target refused a command
+    :raises CannotEdit: the bindings cannot have the parameters
+    :raises Lost: the target does not answer
+    """
+    from epg.live.client import Client
+
+    client = Client(port, relay.told, relay.numbered)
+    try:
+        names = _chosen(client, options)
+        stream = _stream(client, options, relay, names)
+        if not options.json and names:
+            print(f"{stream.rows} rows, {stream.dropped} dropped, {client.damaged} damaged frames")
+        if options.record is not None and stream.dropped:
+            sys.stderr.write(_DROPPED)
+        if not relay.lost and (options.keep is not None or not options.json):
+            _keep(client, options, kept)
+    finally:
+        client.stop()
+
+
+def _stream(client: Client, options: argparse.Namespace, relay: _Relay, names: list[str]) -> Stream:
+    """Streams the signals ``names`` into the files and onto the screen until the end.  Returns the finished stream."""
+    from epg.live.rows import JsonLines, Recorder, Stream
+    from epg.live.screen import Screen, Values
+
+    values = Values(len(names))
+    shows = _has_screen(options)
+    with _files(options, client, names) as files, StopRequest() as stop:
+        more = [JsonLines(sys.stdout, names)] if options.json else [values] if shows else []
+        recording = Recorder(Stream(names), [*files, *more], files)
+        _start(recording, client, names, options)
+        _send(client, options.send, stop, quiet=shows or options.json)
+        end = time.monotonic() + options.duration if options.duration is not None else float("inf")
+        if shows:
+            relay.screen = Screen(client, names, values, recording, relay.faults)
+            relay.screen.run(end, stop)
+        elif options.duration is not None or not (options.send or options.keep):
+            relay.wait(client, recording, end, stop)
+        if names and not relay.lost:
+            client.stop_stream()
+        recording.drain()
+    return recording.stream
+
+
+def _has_screen(options: argparse.Namespace) -> bool:
+    return sys.stdin.isatty() and sys.stdout.isatty() and not options.json and not options.keep
+
+
+def _send(client: Client, lines: Iterable[str], stop: StopRequest, *, quiet: bool) -> None:
+    """Sends the commands, and prints the answers unless ``quiet``."""
+    from epg.live.enabling import send
+
+    for line in lines:
+        if stop.asked:
+            break
+        answer = send(client, line)
+        if not quiet:
+            print("\n".join(answer), flush=True)
+
+
+def _hint_if_lost(port: Path) -> str:
+    from epg.live.udp import is_udp
+
+    if is_udp(port):
+        return "look at the program and at the network, and connect again"
+    return "the firmware needs the console on this port; reset the board, look at the cable; with a UART, check --baud"
+
+
+def _open(options: argparse.Namespace) -> SerialPort | UdpPort:
+    """The open port.  Asks for its key in a terminal.
+
+    :raises PortError: it cannot be used
+    """
+    import getpass
+
+    from epg.live.open import open_port
+    from epg.live.udp import PortLocked
+    from epg.live.udp_keys import keep_key
+
+    while True:
+        try:
+            return open_port(options.port, options.baud)
+        except PortLocked as problem:
+            if not sys.stdin.isatty() or options.send == ["disable"]:
+                raise
+            sys.stderr.write(f"{problem}\n")
+            try:
+                typed = getpass.getpass("The key that its program has printed: ")
+            except EOFError:
+                raise problem from None
+            keep_key(options.port, typed)
+
+
+def _text_of(file: Path) -> str:
+    """The text of a small file.
+
+    :raises PortError: it cannot be read
+    """
+    from epg.live.port import PortError
+
+    try:
+        return file.read_text(encoding="ascii", errors="replace")
+    except OSError as error:
+        raise PortError(f"{file} cannot be read: {error.strerror}", "name the file with the key") from error
+
+
+def _check_unattended(options: argparse.Namespace, diagnostics: Diagnostics) -> None:
+    """Reports a line of --send that enables without a lease, and was not confirmed."""
+    from epg.live.enabling import CONFIRM
+
+    for line in options.send:
+        if line.split() == ["enable", "unattended"] and not options.unattended:
+            span = Span.of_argument(line, "--send")
+            hint = "add --unattended to confirm this, or send 'enable'"
+            diagnostics.error("unattended-not-confirmed", span, f"this is not on a lease: {CONFIRM}", hint=hint)
 
 
 _DROPPED = """A replay is not possible over dropped rows.
@@ -147,9 +263,9 @@ hint: a larger 'capture' in 'communication' of the .tcf keeps more rows in memor
 
 def _bindings(file: Path, diagnostics: Diagnostics) -> str | None:
     """The text of bindings; None after a message if they have a mistake."""
-    from epg.documents.schema import load_schema, validate
-    from epg.documents.text_file import read_text
-    from epg.documents.yaml_file import parse_yaml
+    from epg.generator.documents.schema import load_schema, validate
+    from epg.generator.documents.text_file import read_text
+    from epg.generator.documents.yaml_file import parse_yaml
 
     text = read_text(file, diagnostics)
     root = parse_yaml(text, str(file), diagnostics) if text is not None else None
@@ -162,11 +278,11 @@ def _keep(client: Client, options: argparse.Namespace, bindings: str) -> None:
     :raises Lost: the target does not answer
     """
     from epg.edit.parameters import set_parameters
-    from epg.live.client import Refused
+    from epg.live.client import CommandRefused
 
     try:
         changed = {each.name: each.value for each in client.parameters() if each.value != each.generated}
-    except Refused:  # a target without parameters
+    except CommandRefused:  # a target without parameters
         changed = {}
     said = " ".join(f"{name}={value!r}" for name, value in changed.items())
     if options.keep is not None:
@@ -191,7 +307,7 @@ class _Relay:
 
     def __init__(self) -> None:
         from epg.cli.arguments import user_roots
-        from epg.data import targets_roots
+        from epg.generator.data import targets_roots
         from epg.live.faults import Faults
 
         self.screen: Screen | None = None
@@ -214,23 +330,14 @@ class _Relay:
         else:
             self._numbers.append(number)
 
-    def wait(self, client: Client, recording: Recording, end: float) -> None:
-        """Waits until Ctrl-C, until the connection is lost, or until the monotonic time ``end``."""
-        stopped: list[int] = []
-        before = {
-            number: signal.signal(number, lambda number, _: stopped.append(number))
-            for number in (signal.SIGINT, signal.SIGTERM)
-        }
-        try:
-            while not stopped and not self.lost and time.monotonic() < end:
-                while self._numbers:
-                    client.respond(self._numbers.pop(0))
-                recording.drain()
-                self._explain()
-                time.sleep(0.02)
-        finally:
-            for number, handler in before.items():
-                signal.signal(number, handler)
+    def wait(self, client: Client, recording: Recorder, end: float, stop: StopRequest) -> None:
+        """Waits until ``stop``, until the connection is lost, or until the monotonic time ``end``."""
+        while not stop.asked and not self.lost and time.monotonic() < end:
+            while self._numbers:
+                client.respond(self._numbers.pop(0))
+            recording.drain()
+            self._explain()
+            time.sleep(0.02)
 
     def _explain(self) -> None:
         """Says a new fault in words."""
@@ -247,55 +354,67 @@ def _chosen(client: Client, options: argparse.Namespace) -> list[str]:
 
     :raises Refused: the target does not have them
     """
-    from epg.diagnostics import did_you_mean
-    from epg.live.client import Refused
+    from epg.live.client import CommandRefused
+    from epg.live.replay_file import signals_to_record
 
-    known = [signal.name for signal in client.description.streamed]
     if options.record is not None:
-        from epg.live.recording import signals_to_record
-
         return signals_to_record(client.description)
     if options.signals is None:
         return [signal.name for signal in client.description.signals[:32]] if options.keep is None else []
-    names = []
-    for word in options.signals.split(",") if options.signals != "none" else ():
-        ports = [name for name in known[: len(client.description.signals)] if word in (name, name.split(".", 1)[-1])]
-        # A port of the model has precedence: its short name can also be that of an actuator or an encoder.
-        found = ports or [name for name in known if word in (name, name.split(".", 1)[-1])]
-        if len(found) != 1:
-            problem = f"there is no signal '{word}'" if not found else f"several signals have the name '{word}'"
-            raise Refused(f"{problem} ({did_you_mean(word, known, 'signals')})")
-        names += found
+    if options.signals == "none":
+        return []
+    names = [_signal(word, client.description) for word in options.signals.split(",")]
     if len(names) > 32:
-        raise Refused(f"a stream has at most 32 signals, not {len(names)}")
+        raise CommandRefused(f"a stream has at most 32 signals, not {len(names)}")
     return names
 
 
+def _signal(word: str, description: TargetDescription) -> str:
+    """The signal with the name ``word``, or with this name behind its first dot.
+
+    :raises Refused: there is none, or there are several
+    """
+    from epg.generator.diagnostics import did_you_mean
+    from epg.live.client import CommandRefused
+
+    known = [signal.name for signal in description.streamed]
+    signals = [name for name in known if word in (name, name.split(".", 1)[-1])]
+    # A port of the model has precedence: its short name can also be that of an actuator or an encoder.
+    ports = {signal.name for signal in description.signals}
+    signals = [name for name in signals if name in ports] or signals
+    if len(signals) != 1:
+        problem = f"there is no signal '{word}'" if not signals else f"several signals have the name '{word}'"
+        raise CommandRefused(f"{problem} ({did_you_mean(word, known, 'signals')})")
+    return signals[0]
+
+
 @contextlib.contextmanager
-def _sinks(options: argparse.Namespace, client: Client, names: list[str]) -> Iterator[list[Sink]]:
+def _files(options: argparse.Namespace, client: Client, names: list[str]) -> Iterator[list[File]]:
     """The files of the command line, open."""
-    from epg import bootstrap
-    from epg.live.recording import ReplayFile
-    from epg.live.rows import CsvFile, JsonLines, McapFile
+    from epg.generator import bootstrap
+    from epg.live.replay_file import ReplayFile
+    from epg.live.rows import Named
+    from epg.runs.csv_file import CsvFile
+    from epg.runs.mcap_file import McapRows
 
-    sinks: list[Sink] = []
-    try:
-        if options.csv is not None:
-            sinks.append(CsvFile(options.csv, names))
-        if options.mcap is not None:
-            bootstrap.ensure("mcap")
-            sinks.append(McapFile(options.mcap, names, f"/{client.description.node or 'target'}", time.time_ns()))
-        if options.record is not None:
-            sinks.append(ReplayFile(options.record, client))
-        if options.json:
-            sinks.append(JsonLines(sys.stdout, names))
-        yield sinks
-    finally:
-        for sink in sinks:
-            sink.close()
+    if options.mcap is not None:
+        bootstrap.ensure("mcap")
+    topic = f"/{client.description.node or 'target'}"
+    makers: list[tuple[Path | None, Callable[[], File]]] = [
+        (options.csv, lambda: CsvFile(options.csv, names)),
+        (options.mcap, lambda: McapRows(options.mcap, names, topic, time.time_ns())),
+        (options.record, lambda: ReplayFile(options.record, client)),
+    ]
+    with contextlib.ExitStack() as stack:
+        files: list[File] = []
+        for path, make in makers:
+            if path is not None:
+                files.append(Named(path, make))
+                stack.callback(files[-1].close)
+        yield files
 
 
-def _start(recording: Recording, client: Client, names: list[str], options: argparse.Namespace) -> None:
+def _start(recording: Recorder, client: Client, names: list[str], options: argparse.Namespace) -> None:
     if not names:
         return
     known = [signal.name for signal in client.description.streamed]

@@ -20,10 +20,14 @@ import os
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
-from typing import NoReturn
+from functools import cache
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import epg
-from epg import bootstrap
+from epg.generator import bootstrap
+
+if TYPE_CHECKING:
+    from epg.generator.diagnostics import Diagnostics
 
 COMMANDS = {
     "new": "write a complete project for a model and a target",
@@ -32,12 +36,15 @@ COMMANDS = {
     "generate": "write the sources of a target (CMake calls this)",
     "generate-model": "write the library of one model (CMake calls this)",
     "generate-system": "write the simulation of a system (CMake calls this)",
+    "model-variables": "find the variables of a model in its object files (CMake calls this)",
+    "link-model": "compile and link a model alone (CMake calls this)",
     "generate-all": "write the files of several targets (CMake calls this)",
     "bind": "write bindings for the ports whose names match",
     "ports": "list the ports and parameters of a model",
     "exported": "check an export of 20-sim and print the next steps (EPG's target for 20-sim calls this)",
     "targets": "list targets, component kinds and predefined .tcf files",
-    "explain": "show the path from a model port to its pin",
+    "migrate": "note what files mean now that they did not mean in earlier versions",
+    "explain": "show the path from a model port to its pin, or explain a message by its id",
     "graph": "draw the application, the control cycle or the wiring of the board, as SVG",
     "simulate": "run a target or a system through a scenario and check its limits",
     "flash": "write the images of a system to its boards",
@@ -53,12 +60,46 @@ COMMANDS = {
     "schema": "write the JSON Schemas of EPG's files, for editors",
 }
 
+_BUILD = "CMake builds a project: cmake -S . -B build, then cmake --build build"
+INSTEAD = {
+    **dict.fromkeys(("build", "compile", "make", "all"), _BUILD),
+    "configure": "CMake configures a project: cmake -S . -B build",
+    "clean": "cmake --build build --target clean, or remove the build folder",
+    "run": "a program of this computer runs by its name in the build folder; 'epg simulate' runs a scenario",
+    **dict.fromkeys(("upload", "program"), "'epg flash' writes the images of a system; docs/bring-up.md has one board"),
+    **dict.fromkeys(("init", "create", "start"), "'epg new' writes a project"),
+    **dict.fromkeys(("list", "boards", "kinds"), "'epg targets' lists targets and kinds"),
+    **dict.fromkeys(("validate", "verify", "lint"), "'epg check' checks files"),
+    **dict.fromkeys(("monitor", "console", "watch"), "'epg live' shows the values of a running target"),
+    **dict.fromkeys(("gui", "ui", "edit", "wire"), "'epg connect' connects ports, in the browser or the terminal"),
+    **dict.fromkeys(
+        ("update", "upgrade"), "'epg bind --update' adds new ports of a model, 'epg migrate' compares versions"
+    ),
+    "install": "'epg doctor' lists missing tools, with the commands that install them",
+    "help": "'epg --help' lists the commands",
+    "version": "'epg --version' prints the version",
+}
+"""Words that users write in place of a command, and what does that."""
+
 WITHOUT_PACKAGES = ("doctor", "find-tools")
 """The commands that must run while Python packages are missing.  They install none."""
 
-SHORT = ("check", "generate", "generate-model", "generate-system", "generate-all")
+SHORT = ("check", "generate", "generate-model", "generate-system", "generate-all", "model-variables", "link-model")
 """The commands that end after a moment.  They run without Python's garbage collector, because almost all of their
 objects live as long as they run."""
+
+LISTING = ("connect", "find-tools", "new", "schema", "targets")
+"""The commands that list all that exists, or that go on after an unknown word: they begin with the plug-ins."""
+
+UNKNOWN = (
+    "board-not-found",
+    "targets-not-found",
+    "tcf-not-found",
+    "unknown-kind",
+    "unknown-middleware",
+    "unknown-target",
+)
+"""Messages about words that a plug-in's folder of targets can explain."""
 
 EXIT_OK, EXIT_MISTAKES, EXIT_USAGE, EXIT_BUG, EXIT_MISSING = range(5)
 
@@ -73,31 +114,43 @@ def main(arguments: Sequence[str] | None = None) -> int:
     command = _command(words)
     if arguments is None and command in SHORT:
         gc.disable()
-    if command not in WITHOUT_PACKAGES:
-        try:
-            bootstrap.ensure()
-        except bootstrap.MissingPackages as problem:
-            sys.stderr.write(f"{problem}\n")
-            return EXIT_MISSING
-    parser = _parser(words)
     try:
-        options, unknown = parser.parse_known_args(arguments)
-        if unknown:
-            _refuse(unknown, getattr(options, "parser", parser))
+        if command not in WITHOUT_PACKAGES:
+            bootstrap.ensure()
+        parser = _parser(words)
+        options = _options(words, parser)
+    except bootstrap.MissingPackages as problem:
+        sys.stderr.write(f"{problem}\n")
+        return EXIT_MISSING
     except SystemExit as stop:
         return int(stop.code or 0)
     if options.cmake_dir or options.examples_dir or options.twenty_sim_dir:
-        from epg.data import data_folder
-
-        if options.twenty_sim_dir:
-            print(data_folder("integration") / "20-sim" / "EPG")
-        else:
-            print(data_folder("cmake" if options.cmake_dir else "examples").as_posix())
+        _print_folder(options)
         return EXIT_OK
     if not options.command:
         parser.print_help()
         return EXIT_USAGE
     return _run(options)
+
+
+def _options(words: Sequence[str], parser: argparse.ArgumentParser) -> argparse.Namespace:
+    """The options of the command line.  Exits if it is wrong, or asks for help."""
+    command = _command(words)
+    if command is not None and command == words[0] and command not in _commands(words):
+        _refuse_command(command, parser)
+    options, unknown = parser.parse_known_args(words)
+    if unknown:
+        _refuse(unknown, getattr(options, "parser", parser))
+    return options
+
+
+def _print_folder(options: argparse.Namespace) -> None:
+    from epg.generator.data import data_folder
+
+    if options.twenty_sim_dir:
+        print(data_folder("integration") / "20-sim" / "EPG")
+    else:
+        print(data_folder("cmake" if options.cmake_dir else "examples").as_posix())
 
 
 def main_and_exit() -> NoReturn:
@@ -131,40 +184,81 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     )
     subparsers = parser.add_subparsers(dest="command", metavar="COMMAND")
     chosen = _command(arguments)
-    shown = {chosen: COMMANDS[chosen]} if chosen in COMMANDS and chosen == arguments[0] else COMMANDS
+    commands = _commands(arguments)
+    shown = {chosen: commands[chosen]} if chosen in commands and chosen == arguments[0] else commands
     for name, summary in shown.items():
         sub = subparsers.add_parser(name, help=summary, description=summary[0].upper() + summary[1:] + ".")
         if name == chosen:
             sub.set_defaults(parser=sub)
             sub.add_argument("--json", action="store_true", help="print JSON, for programs")
-            importlib.import_module(f"epg.cli.{name.replace('-', '_')}").add_arguments(sub)
+            _module(name).add_arguments(sub)
     return parser
+
+
+@cache
+def _of_plugins() -> dict[str, Any]:
+    """The commands of plug-ins: modules, or objects, with ``SUMMARY``, ``add_arguments`` and ``run``."""
+    from epg.generator.diagnostics import UserError
+    from epg.generator.plugins import entry_points, load
+
+    try:
+        return {name: load(entry) for name, entry in sorted(entry_points("commands").items()) if name not in COMMANDS}
+    except UserError as problem:
+        from epg.cli.report import format_diagnostics
+
+        sys.stderr.write(format_diagnostics(problem.diagnostics))
+        sys.exit(EXIT_MISSING)
+
+
+def _commands(words: Sequence[str]) -> dict[str, str]:
+    """The commands with their summaries; those of plug-ins, too, for a word that is not known, and for the help."""
+    command = _command(words)
+    if command in COMMANDS or (command is None and words and not {"-h", "--help"} & {*words}):
+        return COMMANDS
+    return COMMANDS | {name: module.SUMMARY for name, module in _of_plugins().items()}
+
+
+def _module(command: str) -> Any:
+    """The module of a command."""
+    if command in COMMANDS:
+        return importlib.import_module(f"epg.cli.{command.replace('-', '_')}")
+    return _of_plugins()[command]
+
+
+_NEAR = 0.7
+"""The similarity, from 0 to 1, of an option and the one that is meant: ``--message`` is not ``--namespace``."""
+
+
+def _refuse_command(command: str, parser: argparse.ArgumentParser) -> None:
+    """Exits, because there is no such command, and says what the user can do instead."""
+    from epg.generator.diagnostics import did_you_mean
+
+    instead = INSTEAD.get(command.casefold()) or did_you_mean(command, COMMANDS)
+    parser.error(f"there is no command '{command}' ({instead})")
 
 
 def _refuse(unknown: Sequence[str], parser: argparse.ArgumentParser) -> None:
     """Exits with the usage of the command, because it does not have the ``unknown`` options."""
-    from epg.diagnostics import did_you_mean
+    from epg.generator.diagnostics import nearest
 
-    option = unknown[0].partition("=")[0]
-    hint = did_you_mean(option, parser._option_string_actions) if option.startswith("--") else ""
-    near = f" ({hint})" if hint.startswith("did you mean") else ""
+    known = {option.lstrip("-"): option for option in parser._option_string_actions}
+    written = [argument.partition("=")[0].lstrip("-") for argument in unknown if argument.startswith("--")]
+    likely = [known[name] for option in written for name in nearest(option, known, _NEAR)]
+    meant = " and ".join(f"'{option}'" for option in dict.fromkeys(likely))
+    near = f" (did you mean {meant}?)" if meant else ""
     parser.error(f"unrecognized arguments: {' '.join(unknown)}{near}")
 
 
 def _run(options: argparse.Namespace) -> int:
     """Runs the chosen subcommand, prints its diagnostics and returns the exit status."""
-    from epg.cli.report import format_diagnostics, to_json
-    from epg.diagnostics import Diagnostics, UserError
+    from epg.generator.diagnostics import Diagnostics
 
     diagnostics = Diagnostics()
-    status: int = EXIT_OK
     try:
-        status = (
-            importlib.import_module(f"epg.cli.{options.command.replace('-', '_')}").run(options, diagnostics) or EXIT_OK
-        )
-    except UserError as problem:
-        if problem.diagnostics is not diagnostics:
-            diagnostics.items.extend(problem.diagnostics)
+        status = _run_command(options, diagnostics)
+        if any(item.id in UNKNOWN for item in diagnostics) and _add_targets_of_plugins(diagnostics):
+            diagnostics = Diagnostics()
+            status = _run_command(options, diagnostics)
     except (MissingProgram, bootstrap.MissingPackages) as problem:
         sys.stderr.write(f"epg: {problem}\n")
         return EXIT_MISSING
@@ -173,17 +267,65 @@ def _run(options: argparse.Namespace) -> int:
         return EXIT_OK
     except KeyboardInterrupt:
         return 130
-    except OSError as problem:  # a folder that cannot be written, a full disk
+    except Exception as problem:
+        return _failed(problem, diagnostics)
+    _report(options, status, diagnostics)
+    return EXIT_MISTAKES if diagnostics.has_errors else status
+
+
+def _run_command(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+    """Runs the chosen subcommand.  Returns its status; the mistakes of users are in ``diagnostics``."""
+    from epg.generator.diagnostics import UserError
+
+    if options.command in LISTING:
+        _add_targets_of_plugins(diagnostics)
+    try:
+        return _module(options.command).run(options, diagnostics) or EXIT_OK
+    except UserError as problem:
+        if problem.diagnostics is not diagnostics:
+            diagnostics.items.extend(problem.diagnostics)
+    return EXIT_OK
+
+
+def _add_targets_of_plugins(diagnostics: Diagnostics) -> bool:
+    """Adds the folders of targets of plug-ins to those of the user.  Returns False if there are no new ones."""
+    from epg.generator.diagnostics import UserError
+    from epg.generator.plugins import targets_folders
+
+    known = [folder for folder in os.environ.get("EPG_TARGETS_PATH", "").split(os.pathsep) if folder]
+    try:
+        new = [str(folder) for folder in targets_folders() if str(folder) not in known]
+    except UserError as problem:
+        diagnostics.items.extend(problem.diagnostics)
+        return False
+    os.environ["EPG_TARGETS_PATH"] = os.pathsep.join([*known, *new])
+    return bool(new)
+
+
+def _failed(problem: Exception, diagnostics: Diagnostics) -> int:
+    """Says why a command could not end.  Returns the exit status."""
+    blamed = bootstrap.blame(problem)  # a library of a package
+    if blamed:
+        sys.stderr.write(f"epg: {blamed}")
+        return EXIT_MISSING
+    if isinstance(problem, OSError):  # a folder that cannot be written, a full disk
         where = f"{problem.filename}: " if problem.filename else ""
         sys.stderr.write(f"epg: {where}{problem.strerror or problem}\n")
         return EXIT_MISSING
-    except Exception:
-        sys.stderr.write(format_diagnostics(diagnostics))
-        import traceback
+    import traceback
 
-        traceback.print_exc()
-        sys.stderr.write(f"epg: this is a bug in EPG {epg.__version__}; please report it with the lines above\n")
-        return EXIT_BUG
+    from epg.cli.report import format_diagnostics
+
+    sys.stderr.write(format_diagnostics(diagnostics))
+    traceback.print_exception(problem)
+    sys.stderr.write(f"epg: this is a bug in EPG {epg.__version__}; please report it with the lines above\n")
+    return EXIT_BUG
+
+
+def _report(options: argparse.Namespace, status: int, diagnostics: Diagnostics) -> None:
+    """Prints the diagnostics in the form that the options ask for."""
+    from epg.cli.report import diagnostics_data, format_diagnostics, to_json
+
     if getattr(options, "format", None) == "sarif" and status != EXIT_USAGE:
         from pathlib import Path
 
@@ -191,6 +333,5 @@ def _run(options: argparse.Namespace) -> int:
 
         sys.stdout.write(to_sarif(diagnostics, Path.cwd()))
     elif diagnostics.items and options.json and diagnostics.has_errors:
-        sys.stdout.write(to_json({"diagnostics": [item.data() for item in diagnostics]}))
+        sys.stdout.write(to_json({"diagnostics": diagnostics_data(diagnostics)}))
     sys.stderr.write(format_diagnostics(diagnostics))
-    return EXIT_MISTAKES if diagnostics.has_errors else status

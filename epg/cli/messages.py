@@ -13,12 +13,12 @@ from __future__ import annotations
 import re
 from functools import cache
 
-from epg.data import data_folder
-from epg.dataclass import dataclass
+from epg.generator.data import data_folder
+from epg.generator.dataclass import dataclass
 
 PAGE = "errors.md"
 _HEADING = re.compile(r"^### (\S+)\n", re.MULTILINE)
-_EXAMPLE = re.compile(r"^```\n(.*?)\n```$", re.MULTILINE | re.DOTALL)
+_EXAMPLE = re.compile(r"^ {4}(\S.*)$", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -67,4 +67,9 @@ def _entry(id: str, body: str) -> Entry:
     body = re.split(r"^## ", body, maxsplit=1, flags=re.MULTILINE)[0]
     example = _EXAMPLE.search(body)
     text = " ".join(_EXAMPLE.sub("", body).split())
-    return Entry(id, text, example[1] if example else "")
+    return Entry(id, text, _with_id(example[1], id) if example else "")
+
+
+def _with_id(example: str, id: str) -> str:
+    """The example as it is printed: the page leaves out an id that is its heading."""
+    return example if re.search(r" \[[a-z0-9._-]+\]$", example) else f"{example} [{id}]"

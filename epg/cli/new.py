@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 from epg.cli.arguments import user_roots
 from epg.cli.report import to_json
 from epg.cli.system import is_system, read_system
-from epg.diagnostics import Diagnostics
+from epg.generator.diagnostics import Diagnostics
 from epg.system import SYSTEM_FILES
 
 if TYPE_CHECKING:
-    from epg.new_project import NewProject
+    from epg.new.new_project import NewProject
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -49,7 +49,7 @@ def _check_options(options: argparse.Namespace) -> None:
 
 
 def _new_system(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
-    from epg.new_system import write_system_project
+    from epg.new.new_system import write_system_project
 
     checked = diagnostics.checked(read_system(options.system, user_roots(), diagnostics))
     project = write_system_project(checked, options.folder, diagnostics)
@@ -66,7 +66,7 @@ def _new_system(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 
 
 def _new_project(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
-    from epg.new_project import ProjectRequest, check_project, write_project
+    from epg.new.new_project import ProjectRequest, check_project, write_project
 
     request = ProjectRequest(
         options.name, options.folder, options.target, options.model, options.middleware, user_roots()

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TextIO
 
 from epg.cli.report import format_diagnostics, to_json
-from epg.diagnostics import Diagnostics
-from epg.emit.writer import remove_stale, write_outputs
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.emit.writer import remove_stale, write_outputs
 
 MANIFEST = ".epg-outputs.json"
 

@@ -9,13 +9,13 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from epg.diagnostics import Diagnostics, did_you_mean
-from epg.source import Span
+from epg.cli.arguments import add_time_range
+from epg.generator.diagnostics import Diagnostics, did_you_mean
+from epg.generator.source import Span
 
 if TYPE_CHECKING:
-    from epg.ros.compare import Comparison
-    from epg.ros.recording import Recording
-    from epg.simulate.picture import Mark
+    from epg.runs.compare import Comparison
+    from epg.runs.recording import Recording
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -41,15 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="signal that aligns the runs; repeat the option for more; default: the setpoints of both runs, else all",
     )
-    parser.add_argument(
-        "--from",
-        type=float,
-        default=-math.inf,
-        dest="begin",
-        metavar="SECONDS",
-        help="compare from this time of the other run",
-    )
-    parser.add_argument("--until", type=float, default=math.inf, metavar="SECONDS", help="compare until this time")
+    add_time_range(parser, "compare from this time of the other run", "compare until this time")
     parser.add_argument(
         "--description",
         type=Path,
@@ -65,16 +57,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
-    from epg import bootstrap
+    from epg.generator import bootstrap
 
     bootstrap.ensure("plot")
-    from epg.ros.recording import load_recording
+    from epg.runs.recording import read_recording
 
     output = options.output or Path(f"{options.run.resolve().stem}.png")
     check_picture(output, diagnostics)
     units = _units(options, diagnostics)
-    recording = load_recording(options.run, diagnostics)
-    other = load_recording(options.against, diagnostics) if options.against else None
+    recording = read_recording(options.run, diagnostics, None if options.against else _MOST)
+    other = read_recording(options.against, diagnostics) if options.against else None
     diagnostics.stop_if_errors()
     assert recording is not None
     if other is None:
@@ -84,7 +76,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 
 def check_picture(path: Path, diagnostics: Diagnostics) -> None:
     """Reports the name of a picture that EPG cannot write."""
-    from epg.simulate.picture import PICTURES
+    from epg.runs.plot_style import PICTURES
 
     if path.suffix not in PICTURES:
         hint = f"the name must end in {' or '.join(PICTURES)}"
@@ -94,7 +86,7 @@ def check_picture(path: Path, diagnostics: Diagnostics) -> None:
 
 def _units(options: argparse.Namespace, diagnostics: Diagnostics) -> dict[str, str]:
     """The units of the signals, if the user has named a description."""
-    from epg.ros.panels import read_units
+    from epg.runs.panels import read_units
 
     if options.description is None:
         return {}
@@ -109,32 +101,25 @@ def _units(options: argparse.Namespace, diagnostics: Diagnostics) -> dict[str, s
 def _plot_one(
     recording: Recording, units: dict[str, str], options: argparse.Namespace, output: Path, diagnostics: Diagnostics
 ) -> int:
-    from epg.ros.compare_plot import plot_recording
-    from epg.ros.panels import panels_of
+    from epg.runs.compare_plot import plot_recording
+    from epg.runs.panels import panels_of
+    from epg.simulate.marks import state_marks
 
     # The state and the times of a trace are marks, and no curves unless the user asks for them.
     names = options.signal or [name for name in recording.signals if name not in _STATE] or list(recording.signals)
     for name in names:
-        _check(name, recording, "--signal", diagnostics)
+        recording.check(name, "--signal", diagnostics)
     diagnostics.stop_if_errors()
-    found = panels_of(names, recording.setpoints, units)
-    shown = plot_recording(recording, found, output, _title(options.run), _marks(recording))
-    _warn(shown, len(found), "panels", output, diagnostics)
+    panels = panels_of(names, recording.setpoints, units)
+    shown = plot_recording(recording, panels, output, _title(options.run), state_marks(recording.signals))
+    _warn(shown, len(panels), "panels", output, diagnostics)
     print(f"wrote {output}")
     return 0
 
 
-_STATE = ("enabled", "fault", "lateness", "computation")
-
-
-def _marks(recording: Recording) -> list[Mark]:
-    """The times at which the target was enabled, was disabled or had a fault, if the recording has them."""
-    from epg.simulate.marks import SIGNALS, state_marks
-
-    found = [recording.signals.get(name) for name in SIGNALS]
-    if found[0] is None or found[1] is None or len(found[0].time) != len(found[1].time):
-        return []
-    return state_marks({"time": found[0].time, "enabled": found[0].value, "fault": found[1].value})
+_STATE = ("enabled", "fault", "lateness", "computation", "cycle")
+_MOST = 100_000
+"""The greatest number of points of a signal in a plot: some 80 for each dot of the picture's width."""
 
 
 def _warn(shown: int, count: int, what: str, output: Path, diagnostics: Diagnostics) -> None:
@@ -153,20 +138,22 @@ def _compare(
     diagnostics: Diagnostics,
 ) -> int:
     from epg.cli.report import to_json
-    from epg.ros.compare import compare
-    from epg.ros.compare_plot import plot_comparison
+    from epg.runs.compare import compare
+    from epg.runs.compare_plot import plot_comparison
+    from epg.simulate.marks import state_marks
 
     pairs = _pairs(recording, other, options.signal, diagnostics)
     by = _aligning(recording, other, pairs, options.by, diagnostics)
     diagnostics.stop_if_errors()
-    comparison = compare(recording, other, pairs, options.align, by, (options.begin, options.until))
+    comparison = compare(recording.signals, other.signals, pairs, options.align, by, (options.begin, options.until))
     for pair in comparison.pairs:
         if math.isnan(pair.rms):
             message = f"'{pair.name}' was not recorded at the same time in both runs after they were aligned"
             diagnostics.warning("no-overlap", Span(str(options.run)), message)
     if all(math.isnan(pair.rms) for pair in comparison.pairs):
         return 0
-    shown = plot_comparison(comparison, units, (_title(options.run), _title(options.against)), output, _marks(other))
+    titles = (_title(options.run), _title(options.against))
+    shown = plot_comparison(comparison, units, titles, output, state_marks(other.signals))
     _warn(shown, sum(not math.isnan(pair.rms) for pair in comparison.pairs), "signals", output, diagnostics)
     if options.json:
         data = [
@@ -205,8 +192,8 @@ def _pairs(recording: Recording, other: Recording, wanted: list[str], diagnostic
     for text in wanted:
         name, _, against = text.partition("=")
         pairs[name] = against or name
-        _check(name, recording, "--signal", diagnostics)
-        _check(pairs[name], other, "--signal", diagnostics)
+        recording.check(name, "--signal", diagnostics)
+        other.check(pairs[name], "--signal", diagnostics)
     return pairs
 
 
@@ -223,13 +210,6 @@ def _aligning(
     if wanted:
         return {name: pairs[name] for name in wanted if name in pairs}
     return {name: name for name in sorted(recording.setpoints & other.setpoints)} or pairs
-
-
-def _check(name: str, recording: Recording, option: str, diagnostics: Diagnostics) -> None:
-    if name not in recording.signals:
-        message = f"'{name}' is not in {recording.path}"
-        hint = did_you_mean(name, recording.signals, "signals")
-        diagnostics.error("unknown-recorded-signal", Span.of_argument(name, option), message, hint=hint)
 
 
 def _title(path: Path) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 
 from epg.cli.report import to_json
 from epg.cli.table import table
-from epg.diagnostics import Diagnostics
+from epg.generator.diagnostics import Diagnostics
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -18,7 +18,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
-    from epg.models import load_model
+    from epg.generator.importers import load_model
 
     model = diagnostics.checked(load_model(options.model, diagnostics))
     if options.json:

@@ -5,19 +5,20 @@ from __future__ import annotations
 
 import argparse
 import os
-import signal
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from epg.cli.robot import TARGET, add_robot_arguments, robot_of, robots_of_system
+from epg.cli.arguments import refuse_existing
+from epg.cli.progress import StopRequest
+from epg.cli.ros_target import TARGET, add_robot_arguments, robot_of, robots_of_system
 from epg.cli.system import is_system
-from epg.diagnostics import Diagnostics
-from epg.source import Span
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.source import Span
 
 if TYPE_CHECKING:
-    from epg.ros.recorder import Heard
-    from epg.ros.robot import Robot
+    from epg.ros.recorder import Channel, Heard
+    from epg.runs.robot import Robot
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -43,38 +44,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
-    from epg import bootstrap
-    from epg.cli.progress import Progress
     from epg.cli.report import to_json
-    from epg.ros.open_source import open_source
-    from epg.ros.recorder import MCAP, SETPOINTS, TOPICS, channels_of, channels_of_system, record
+    from epg.generator import bootstrap
+    from epg.ros.recorder import MCAP, SETPOINTS, TOPICS
 
-    system = is_system(options.target)
-    one = None if system else robot_of(options, diagnostics)
-    robots = robots_of_system(options, diagnostics) if system else [] if one is None else [one]
+    robots = _robots(options, diagnostics)
     files = [options.output / name for name in (SETPOINTS, TOPICS, *([MCAP] if options.mcap else []))]
-    for file in files:
-        if file.exists() and not options.force:
-            diagnostics.error("file-exists", Span(str(file)), "this file exists", hint="--force overwrites it")
+    refuse_existing(files, options.force, diagnostics)
     domain = _domain(options, robots, diagnostics)
     diagnostics.stop_if_errors()
-    channels, unknown = channels_of_system(robots) if system else channels_of(robots[0])
-    for topic in unknown:
-        message = f"'{topic.name}' is not recorded: EPG does not support the type {topic.type}"
-        diagnostics.warning("type-not-recorded", Span(str(robots[0].file)), message)
+    channels = _channels(options, robots, diagnostics)
     if options.mcap:
         bootstrap.ensure("mcap")
-    source = open_source(options.through, [channel.subscription for channel in channels], domain)
-    progress = Progress(quiet=options.json)
-    try:
-        with _Stop() as stop:
-            heard = record(source, channels, options.output, options.duration, stop, progress, options.mcap)
-    finally:
-        source.close()
-        progress.done()
-    for found in heard:
-        if found.messages == 0 and found.channel.file == TOPICS:  # setpoints need not be sent during a recording
-            message = f"no message was received on {found.channel.name}: {_reason(found)}"
+    heard = _recorded(options, channels, domain)
+    for topic in heard:
+        if topic.messages == 0 and topic.channel.file == TOPICS:  # setpoints need not be sent during a recording
+            message = f"no message was received on {topic.channel.name}: {_reason(topic)}"
             diagnostics.warning("nothing-heard", Span(str(robots[0].file)), message)
     if options.json:
         data = [
@@ -86,6 +71,41 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         print(_table(heard))
         print("\nwrote " + ", ".join(str(file) for file in files))
     return 0
+
+
+def _robots(options: argparse.Namespace, diagnostics: Diagnostics) -> list[Robot]:
+    """The targets to record; none after an error."""
+    if is_system(options.target):
+        return robots_of_system(options, diagnostics)
+    robot = robot_of(options, diagnostics)
+    return [] if robot is None else [robot]
+
+
+def _channels(options: argparse.Namespace, robots: list[Robot], diagnostics: Diagnostics) -> list[Channel]:
+    """The topics to record.  Warns of those whose type EPG does not support."""
+    from epg.ros.recorder import channels_of, channels_of_system
+
+    channels, unknown = channels_of_system(robots) if is_system(options.target) else channels_of(robots[0])
+    for topic in unknown:
+        message = f"'{topic.name}' is not recorded: EPG does not support the type {topic.type}"
+        diagnostics.warning("type-not-recorded", Span(str(robots[0].file)), message)
+    return channels
+
+
+def _recorded(options: argparse.Namespace, channels: list[Channel], domain: int) -> list[Heard]:
+    """Records the topics until the end, and returns a summary of each."""
+    from epg.cli.progress import ProgressLine
+    from epg.ros.open_source import open_source
+    from epg.ros.recorder import record
+
+    source = open_source(options.through, [channel.subscription for channel in channels], domain)
+    progress = ProgressLine(quiet=options.json)
+    try:
+        with StopRequest() as stop:
+            return record(source, channels, options.output, options.duration, stop, progress, options.mcap)
+    finally:
+        source.close()
+        progress.done()
 
 
 def _domain(options: argparse.Namespace, robots: list[Robot], diagnostics: Diagnostics) -> int:
@@ -120,27 +140,6 @@ def _table(heard: list[Heard]) -> str:
         for h in heard
     ]
     return table(("topic", "type", "messages", "rate", "file"), rows)
-
-
-class _Stop:
-    """Returns True when called after Ctrl-C or SIGTERM.  The recording then ends normally, with complete files."""
-
-    def __init__(self) -> None:
-        self.asked = False
-
-    def __enter__(self) -> _Stop:
-        self.before = {number: signal.signal(number, self._ask) for number in (signal.SIGINT, signal.SIGTERM)}
-        return self
-
-    def _ask(self, number: int, frame: object) -> None:
-        self.asked = True
-
-    def __call__(self) -> bool:
-        return self.asked
-
-    def __exit__(self, *_: object) -> None:
-        for number, handler in self.before.items():
-            signal.signal(number, handler)
 
 
 def _seconds(text: str) -> float:

@@ -9,11 +9,10 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from epg.diagnostics import Diagnostics
-from epg.source import Span
+from epg.generator.diagnostics import Diagnostics
 
 if TYPE_CHECKING:
-    from epg.live.replay import Replayed
+    from epg.simulate.replay import Replayed
 
 EXIT_DIFFERENT = 5
 """The exit status if an output differs by more than the tolerance."""
@@ -52,18 +51,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
-    from epg.cli.progress import Progress
+    from epg.cli.arguments import refuse_existing
+    from epg.cli.progress import ProgressLine
     from epg.cli.report import to_json
-    from epg.live.recording import read_recording
-    from epg.live.replay import replay
+    from epg.simulate.replay import read_cycles, replay
 
-    if options.trace is not None and options.trace.exists() and not options.force:
-        diagnostics.error("file-exists", Span(str(options.trace)), "this file exists", hint="--force overwrites it")
-    found = diagnostics.checked(read_recording(options.recording, diagnostics))
-    progress = Progress(quiet=options.json)
+    refuse_existing([options.trace], options.force, diagnostics)
+    recording = diagnostics.checked(read_cycles(options.recording, diagnostics))
+    progress = ProgressLine(quiet=options.json)
     try:
         result = replay(
-            found,
+            recording,
             options.executable,
             diagnostics,
             changed=options.changed,
@@ -77,7 +75,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         sys.stdout.write(to_json(result.data()))
     else:
         print(_text(result))
-        if not result.passed and found.is_trace:
+        if not result.passed and not recording.model:
             print("A trace has no changes of parameters: the replay has the generated values.")
     return 0 if result.passed else EXIT_DIFFERENT
 
@@ -98,18 +96,7 @@ def _text(result: Replayed) -> str:
     lines = [table(("output", "cycles", "differ", "largest difference", "first difference"), rows), ""]
     counts = [(result.cycles, "control cycle"), (result.enablings, "enabling"), (result.changes, "change")]
     told = ", ".join(f"{number} {word}{'' if number == 1 else 's'}" for number, word in counts)
-    lines.append(f"{told} of parameters")
-    if result.tolerance > 0 and result.functions:
-        lines.append(
-            f"tolerance: {result.tolerance:g} of each output's largest value, because the model calls "
-            f"{', '.join(result.functions)}"
-        )
-    elif result.tolerance > 0:
-        lines.append(f"tolerance: {result.tolerance:g} of each output's largest value")
-    elif result.functions:
-        lines.append("tolerance: none, as --tolerance says")
-    else:
-        lines.append("tolerance: none, because the model has only + - * /")
+    lines += [f"{told} of parameters", f"tolerance: {_tolerance(result)}"]
     if result.stopped is not None:
         lines.append(
             f"in cycle {result.stopped[0]} ({result.stopped[1]:.6g} s), the replay had a fault that the recording "
@@ -121,6 +108,14 @@ def _text(result: Replayed) -> str:
     else:
         lines.append("DIFFERENT")
     return "\n".join(lines)
+
+
+def _tolerance(result: Replayed) -> str:
+    """The tolerance, and the reason for it."""
+    if result.tolerance > 0:
+        reason = f", because the model calls {', '.join(result.functions)}" if result.functions else ""
+        return f"{result.tolerance:g} of each output's largest value{reason}"
+    return "none, as --tolerance says" if result.functions else "none, because the model has only + - * /"
 
 
 def _change(text: str) -> tuple[str, str]:

@@ -13,23 +13,30 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from pathlib import Path
+from typing import Any
 
-from epg.diagnostics import Diagnostic, Diagnostics
-from epg.source import Span
+from epg.edit import applied
+from epg.generator.diagnostics import Diagnostic, Diagnostics, Edit
+from epg.generator.source import Span
 
 _Reader = Callable[[str], Sequence[str]]
 
 
+def _read_text(file: str) -> str | None:
+    """The text of a file without its byte order mark; None if it cannot be read."""
+    try:
+        return Path(file).read_bytes().decode("utf-8-sig", "replace")
+    except OSError:
+        return None
+
+
 def _read_lines(file: str) -> Sequence[str]:
     """The lines of a file; none if it cannot be read."""
-    try:
-        text = Path(file).read_bytes().decode("utf-8-sig", "replace")
-    except OSError:
-        return ()
-    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    text = _read_text(file)
+    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n") if text is not None else ()
 
 
 def format_diagnostics(diagnostics: Diagnostics) -> str:
@@ -37,6 +44,18 @@ def format_diagnostics(diagnostics: Diagnostics) -> str:
     ordered = sorted(diagnostics, key=lambda d: (d.span.file, d.span.line, d.span.column, d.id, d.message))
     lines_of = cache(_read_lines)
     return "".join(_format(diagnostic, lines_of) for diagnostic in ordered)
+
+
+def edits_of(diagnostics: Iterable[Diagnostic]) -> list[list[Edit]]:
+    """For each diagnostic the edits that its hint proposes: one, or several of which the user chooses one."""
+    text_of = cache(_read_text)
+    return [applied.edits_of(each, text_of) for each in diagnostics]
+
+
+def diagnostics_data(diagnostics: Diagnostics) -> list[dict[str, Any]]:
+    """All diagnostics as data for programs."""
+    edits = edits_of(diagnostics)
+    return [{**each.data(), "edits": [edit.data() for edit in proposed]} for each, proposed in zip(diagnostics, edits)]
 
 
 def to_json(data: object) -> str:

@@ -13,9 +13,9 @@ from urllib.parse import quote
 
 import epg
 from epg.cli.messages import PAGE, find_entry
-from epg.cli.report import to_json
-from epg.diagnostics import Diagnostic
-from epg.source import Span
+from epg.cli.report import edits_of, to_json
+from epg.generator.diagnostics import Diagnostic, Edit
+from epg.generator.source import Span
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 HOME_PAGE = "https://epg.dev"
@@ -38,7 +38,10 @@ def to_sarif(diagnostics: Iterable[Diagnostic], folder: Path) -> str:
             }
         },
         "columnKind": "unicodeCodePoints",
-        "results": [_result(diagnostic, rules[diagnostic.id], folder) for diagnostic in ordered],
+        "results": [
+            {**_result(diagnostic, rules[diagnostic.id], folder), **_fixes(edits, folder)}
+            for diagnostic, edits in zip(ordered, edits_of(ordered))
+        ],
     }
     return to_json({"$schema": SCHEMA, "version": "2.1.0", "runs": [run]})
 
@@ -71,6 +74,27 @@ def _result(diagnostic: Diagnostic, rule: int, folder: Path) -> dict[str, Any]:
             for number, note in enumerate(diagnostic.notes)
         ]
     return result
+
+
+def _fixes(edits: Iterable[Edit], folder: Path) -> dict[str, Any]:
+    """The proposed edits of files (3.55), of which one is to be chosen.
+
+    An edit of the command line changes no file, so the log does not have it.
+    """
+    fixes = [_fix(edit, folder) for edit in edits if edit.span.file != COMMAND_LINE]
+    return {"fixes": fixes} if fixes else {}
+
+
+def _fix(edit: Edit, folder: Path) -> dict[str, Any]:
+    line, column = edit.end
+    region = {"startLine": edit.span.line, "startColumn": edit.span.column, "endColumn": column}
+    if line > edit.span.line:
+        region["endLine"] = line
+    change = {
+        "artifactLocation": {"uri": _uri(edit.span.file, folder)},
+        "replacements": [{"deletedRegion": region, "insertedContent": {"text": edit.new}}],
+    }
+    return {"description": {"text": edit.sentence}, "artifactChanges": [change]}
 
 
 def _location(span: Span, folder: Path) -> dict[str, Any]:

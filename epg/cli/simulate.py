@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from epg.cli.system import is_system
-from epg.diagnostics import Diagnostics
-from epg.source import Span
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.source import Span
 
 if TYPE_CHECKING:
-    from epg.cli.progress import Progress
-    from epg.simulate.result import Result
+    from epg.cli.progress import ProgressLine
+    from epg.simulate.result import SimulationResult
     from epg.simulate.run_system import SystemResult
 
 EXIT_LIMITS = 5
@@ -41,16 +41,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
-    from epg import bootstrap
-    from epg.cli.progress import Progress
+    from epg.cli.progress import ProgressLine
     from epg.cli.report import to_json
+    from epg.generator import bootstrap
     from epg.simulate import format_table
 
     try:
         bootstrap.ensure("plot")
     except bootstrap.MissingPackages as problem:
         sys.stderr.write(f"epg: no plot will be drawn: {problem}\n")
-    progress = Progress(quiet=options.json)
+    progress = ProgressLine(quiet=options.json)
     try:
         result = _simulate(options, diagnostics, progress)
     finally:
@@ -70,10 +70,12 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     return 0 if result.passed else EXIT_LIMITS
 
 
-def _simulate(options: argparse.Namespace, diagnostics: Diagnostics, progress: Progress) -> Result | SystemResult:
+def _simulate(
+    options: argparse.Namespace, diagnostics: Diagnostics, progress: ProgressLine
+) -> SimulationResult | SystemResult:
     """Runs the program; before this, the program of a system's file is built."""
+    from epg.runs.interface import read_interface
     from epg.simulate import load_scenario, simulate, simulate_system
-    from epg.simulate.interface import read_interface
 
     executable: Path = options.executable
     if is_system(executable):

@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from epg.cli.table import table
-from epg.diagnostics import Diagnostics, did_you_mean
-from epg.quantity import show
+from epg.generator.diagnostics import Diagnostics, did_you_mean
+from epg.generator.quantity import show
 from epg.system import SYSTEM_FILES
 
 if TYPE_CHECKING:
-    from epg.resolve.application import Plant
-    from epg.source import Span
+    from epg.generator.resolve.application import Plant
+    from epg.generator.source import Span
     from epg.system.check_system import CheckedSystem, Link
     from epg.system.system import System, SystemTarget
 
@@ -38,8 +38,8 @@ def read_system(path: Path, user_roots: Sequence[Path], diagnostics: Diagnostics
 
 def system_of(options: argparse.Namespace, diagnostics: Diagnostics) -> tuple[System, Span]:
     """The system that CMake names, and the place of its call.  Stops after reporting mistakes."""
-    from epg.documents.cmake_call import caller_span
-    from epg.source import Span
+    from epg.generator.documents.cmake_call import caller_span
+    from epg.generator.source import Span
     from epg.system.load_system import load_system
 
     caller = caller_span(options.caller, options.name) if options.caller else Span("command line")

@@ -5,11 +5,17 @@ from __future__ import annotations
 
 import argparse
 import sys
+from typing import TYPE_CHECKING, Any
 
 from epg.cli.arguments import user_roots
 from epg.cli.report import to_json
 from epg.cli.table import table
-from epg.diagnostics import Diagnostics
+from epg.generator.diagnostics import Diagnostics
+
+if TYPE_CHECKING:
+    from epg.generator.catalog.catalog import Catalog
+    from epg.generator.catalog.hardware import Target
+    from epg.generator.catalog.kind import Kind
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -17,10 +23,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
-    from epg.catalog.catalog import load_catalog
-    from epg.check.middleware import offered
-    from epg.data import targets_roots
-    from epg.documents.tcf import predefined_tcf_names
+    from epg.generator.catalog.catalog import load_catalog
+    from epg.generator.check.middleware import offered
+    from epg.generator.data import targets_roots
+    from epg.generator.documents.tcf import predefined_tcf_names
 
     roots = targets_roots(user_roots())
     catalog = load_catalog(roots, diagnostics)
@@ -28,61 +34,45 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     kinds = [kind for name in catalog.kind_names() if (kind := catalog.find_kind(name)) is not None]
     files = predefined_tcf_names(roots)
     if options.json:
-        sys.stdout.write(
-            to_json(
-                {
-                    "targets": [
-                        {
-                            "name": t.name,
-                            "board": t.board.name,
-                            "platform": t.platform.name,
-                            "builds": t.platform.builds,
-                            "clocks": {
-                                clock.name: None if clock.frequency is None else float(clock.frequency)
-                                for clock in t.clocks.values()
-                            },
-                            "middlewares": {name: list(transports) for name, transports in offered(t, catalog).items()},
-                        }
-                        for t in targets
-                    ],
-                    "kinds": [
-                        {
-                            "name": k.name,
-                            "summary": k.summary,
-                            "ports": [
-                                {"name": k.shown_port(p), "direction": p.direction, "unit": p.unit, "type": p.type}
-                                for p in k.ports
-                            ],
-                        }
-                        for k in kinds
-                    ],
-                    "tcf": files,
-                }
-            )
-        )
-        return 0
-    if options.kinds:
+        data = {"targets": [_target(t, catalog) for t in targets], "kinds": [_kind(k) for k in kinds], "tcf": files}
+        sys.stdout.write(to_json(data))
+    elif options.kinds:
+        print(table(("kind", "ports", "short description"), [(k.name, _ports(k), k.summary) for k in kinds]))
+    else:
         rows = [
-            (
-                k.name,
-                ", ".join(f"{k.shown_port(p)} ({p.direction}{', ' + p.unit if p.unit else ''})" for p in k.ports),
-                k.summary,
-            )
-            for k in kinds
+            (t.name, t.board.summary, t.platform.summary, ", ".join(offered(t, catalog)), _builds(t)) for t in targets
         ]
-        print(table(("kind", "ports", "short description"), rows))
-        return 0
-    lines = [
-        (
-            t.name,
-            t.board.summary,
-            t.platform.summary,
-            ", ".join(offered(t, catalog)),
-            "yes" if t.platform.builds else "check only",
-        )
-        for t in targets
-    ]
-    print(table(("target", "board", "platform", "middlewares", "builds"), lines))
-    print("\ncomponent kinds: " + ", ".join(k.name for k in kinds) + "   (epg targets --kinds)")
-    print("predefined .tcf: " + ", ".join(files))
+        print(table(("target", "board", "platform", "middlewares", "builds"), rows))
+        print("\ncomponent kinds: " + ", ".join(k.name for k in kinds) + "   (epg targets --kinds)")
+        print("predefined .tcf: " + ", ".join(files))
     return 0
+
+
+def _target(target: Target, catalog: Catalog) -> dict[str, Any]:
+    from epg.generator.check.middleware import offered
+
+    frequencies = {clock.name: clock.frequency for clock in target.clocks.values()}
+    return {
+        "name": target.name,
+        "board": target.board.name,
+        "platform": target.platform.name,
+        "builds": target.platform.builds,
+        "clocks": {name: None if value is None else float(value) for name, value in frequencies.items()},
+        "middlewares": {name: list(transports) for name, transports in offered(target, catalog).items()},
+    }
+
+
+def _builds(target: Target) -> str:
+    return "yes" if target.platform.builds else "check only"
+
+
+def _kind(kind: Kind) -> dict[str, Any]:
+    ports = [
+        {"name": kind.shown_port(port), "direction": port.direction, "unit": port.unit, "type": port.type}
+        for port in kind.ports
+    ]
+    return {"name": kind.name, "summary": kind.summary, "ports": ports}
+
+
+def _ports(kind: Kind) -> str:
+    return ", ".join(f"{kind.shown_port(p)} ({p.direction}{', ' + p.unit if p.unit else ''})" for p in kind.ports)

@@ -15,10 +15,10 @@ from dataclasses import field
 from pathlib import Path
 from typing import Any, ClassVar
 
-from epg.connect.build.messages import Message, Messages, plain
+from epg.connect.build.build_messages import BuildMessage, Messages, plain
 from epg.connect.build.process import Process
-from epg.dataclass import dataclass
-from epg.diagnostics import UserError
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import UserError
 
 KEPT = 20_000
 """The number of lines of output that can be read again; older ones are forgotten."""
@@ -35,7 +35,7 @@ class Outcome:
     """The end of an activity.  ``state`` is "done", "failed" or "cancelled".  ``more`` are other values to show."""
 
     state: str
-    messages: Sequence[Message] = ()
+    messages: Sequence[BuildMessage] = ()
     more: Mapping[str, Any] = field(default_factory=dict)
 
 
@@ -123,7 +123,7 @@ class Activity:
         with self._lock:
             self._reader = reader
 
-    def found_messages(self) -> list[Message]:
+    def found_messages(self) -> list[BuildMessage]:
         """The messages in the output of a program that has failed."""
         return self._reader.finish(failed=True) if self._reader is not None else []
 
@@ -188,14 +188,16 @@ class Activity:
             self._changed()
 
     def _do(self, work: Callable[[], Outcome]) -> None:
-        outcome = Outcome("failed", [Message("error", "this is a bug in EPG: the terminal shows it", id="run-failed")])
+        outcome = Outcome(
+            "failed", [BuildMessage("error", "this is a bug in EPG: the terminal shows it", id="run-failed")]
+        )
         try:
             outcome = work()
         except UserError as problem:
             outcome = Outcome("failed", [message_of(each.data()) for each in problem.diagnostics])
         except OSError as error:
             text = f"{error.filename or 'the program'}: {error.strerror or error}"
-            outcome = Outcome("failed", [Message("error", text, id="run-failed")])
+            outcome = Outcome("failed", [BuildMessage("error", text, id="run-failed")])
         finally:
             with self._lock:
                 self._outcome, self._reader, self._process = outcome, None, None
@@ -203,7 +205,7 @@ class Activity:
             self._changed()
 
 
-def message_of(found: Mapping[str, Any]) -> Message:
+def message_of(data: Mapping[str, Any]) -> BuildMessage:
     """A diagnostic of the command line, from its JSON, as a message."""
     keys = ("severity", "message", "file", "line", "column", "hint", "id")
-    return Message(**{key: found[key] for key in keys if found.get(key) is not None})
+    return BuildMessage(**{key: data[key] for key in keys if data.get(key) is not None})

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from epg.edit.bindings import End
+from epg.edit.bindings import WireEnd
 
 _LONGEST = 1000
 _MOST_ENDS = 64
@@ -74,7 +74,7 @@ def keys(value: object) -> tuple[str, ...]:
     return tuple(text({"path": key}, "path") for key in value)
 
 
-def ends(body: Body) -> tuple[End, ...]:
+def ends(body: Body) -> tuple[WireEnd, ...]:
     """The ends of a wire, at most 64."""
     value = body.get("ends")
     if not isinstance(value, list) or len(value) > _MOST_ENDS:
@@ -82,7 +82,7 @@ def ends(body: Body) -> tuple[End, ...]:
     return tuple(_end(end) for end in value)
 
 
-def _end(value: object) -> End:
+def _end(value: object) -> WireEnd:
     if not isinstance(value, Mapping):
         raise Refused("each of 'ends' must be an object with a 'reference'")
     limits = value.get("limits")
@@ -91,7 +91,7 @@ def _end(value: object) -> End:
         if not isinstance(limits, list) or len(limits) != 2:
             raise Refused("'limits' must be two numbers: [lowest, highest]")
         pair = (_number(limits[0], "limits"), _number(limits[1], "limits"))
-    return End(
+    return WireEnd(
         reference=text(value, "reference").strip(),
         scale=_number(value.get("scale", ""), "scale"),
         offset=_number(value.get("offset", ""), "offset"),

@@ -10,10 +10,10 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from epg.dataclass import dataclass
-from epg.diagnostics import Diagnostics
-from epg.documents.text_file import is_file
-from epg.tools.find_tool import read_cmake_cache
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.text_file import is_file
+from epg.generator.tools.find_tool import read_cmake_cache
 
 USUAL = "build"
 CACHE = "CMakeCache.txt"
@@ -37,15 +37,19 @@ def build_folders(source: Path) -> list[BuildFolder]:
     presets = list(_presets(source))
     places = [source / USUAL, *_below(source / USUAL), *(preset.path for preset in presets), *_below(source)]
     places += _below(source.parent / USUAL)  # sysbuild: the build folder of the application around an image
-    found: dict[Path, BuildFolder] = {}
+    folders: dict[Path, BuildFolder] = {}
     names = {preset.path: preset.preset for preset in presets}
     for place in places:
-        variables = _cache(place / CACHE) if place not in found else {}
+        variables = _cache(place / CACHE) if place not in folders else {}
         if _same(variables.get("CMAKE_HOME_DIRECTORY", ""), source):
             above = place.parent
             path = above if "APP_DIR" in _cache(above / CACHE) else place
-            found[place] = BuildFolder(path, variables.get("BOARD", ""), names.get(place, ""), place)
-    return [*found.values(), *(preset for preset in presets if preset.path not in found), BuildFolder(source / USUAL)]
+            folders[place] = BuildFolder(path, variables.get("BOARD", ""), names.get(place, ""), place)
+    return [
+        *folders.values(),
+        *(preset for preset in presets if preset.path not in folders),
+        BuildFolder(source / USUAL),
+    ]
 
 
 def _below(folder: Path) -> list[Path]:
@@ -85,9 +89,9 @@ def _inherited(preset: Mapping[str, Any], key: str, presets: Mapping[str, Mappin
         return preset.get(key)
     inherits = preset.get("inherits", [])
     for parent in [inherits] if isinstance(inherits, str) else inherits:
-        found = _inherited(presets.get(str(parent), {}), key, presets, depth + 1)
-        if found is not None:
-            return found
+        value = _inherited(presets.get(str(parent), {}), key, presets, depth + 1)
+        if value is not None:
+            return value
     return None
 
 

@@ -13,19 +13,21 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from pathlib import Path
 
-from epg.catalog.catalog import Catalog
-from epg.check.names import identifier_problem
 from epg.connect.body import Refused
 from epg.connect.draft import Change, Operation, RemoveValue, RenameKey, SetEnds, SetParameter, SetValue
-from epg.connect.forms import Data, field_at, value_of
-from epg.connect.loaded import Loaded
-from epg.dataclass import dataclass
-from epg.diagnostics import Diagnostics
-from epg.edit.bindings import End, ends_of
+from epg.connect.form_fields import FormField, Forms
+from epg.connect.forms import value_of
+from epg.connect.json_data import Data
+from epg.connect.loaded import Loaded, value_at
+from epg.edit.bindings import WireEnd
 from epg.edit.parameters import PARAMETERS, parameter_path
-from epg.project import Request, load_configuration
-from epg.quantity import number_hint
-from epg.resolve.first_fit import first_fit, signals_of
+from epg.generator.catalog.catalog import Catalog
+from epg.generator.check.names import identifier_problem
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.project import Request, load_configuration
+from epg.generator.quantity import number_hint
+from epg.generator.resolve.first_fit import first_fit, signals_of
 
 COMPONENTS = "components"
 _SETTINGS = (("control", "fail_safe"), ("communication", "transport"), ("communication", "console", "transport"))
@@ -41,7 +43,7 @@ class Users:
     ``files`` are files of the project that EPG does not change here: of a simulated robot, or scenarios.
     """
 
-    ports: dict[str, list[End]] = field(default_factory=dict)
+    ports: dict[str, list[WireEnd]] = field(default_factory=dict)
     components: list[tuple[str, str]] = field(default_factory=list)
     settings: list[tuple[str, ...]] = field(default_factory=list)
     files: list[str] = field(default_factory=list)
@@ -49,30 +51,30 @@ class Users:
 
 def users_of(loaded: Loaded, folder: Path) -> dict[str, Users]:
     """The uses of each component.  ``folder`` is that of the project."""
-    found = {name: Users() for name in _names(loaded)}
-    for section in ("inputs", "outputs"):
-        ports = loaded.root.get(section) if loaded.root is not None else None
-        for port, _ in ports.items() if ports is not None else ():
-            assert loaded.root is not None
-            ends: Sequence[End] = ends_of(loaded.root, section, port) or ()
-            for name in dict.fromkeys(end.reference.partition(".")[0] for end in ends):
-                if name in found:
-                    found[name].ports[port] = list(ends)
+    users = {name: Users() for name in _names(loaded)}
+    for _, port, ends in loaded.wires:
+        for name in users.keys() & {end.reference.partition(".")[0] for end in ends}:
+            users[name].ports[port] = list(ends)
+    for component, key, name in _named_by_components(loaded):
+        if name in users:
+            users[name].components.append((component, key))
+    for path in _SETTINGS:
+        value = value_at(loaded.tree, *path)
+        if value is not None and value.value in users:
+            users[str(value.value)].settings.append(path)
+    for file, words in _other_files(loaded, folder):
+        for name in users.keys() & words:
+            users[name].files.append(file)
+    return users
+
+
+def _named_by_components(loaded: Loaded) -> Iterator[tuple[str, str, str]]:
+    """The components that name another one: the name of each, its key, and the name of the other."""
     for component in loaded.components.values():
         for use in component.kind.uses:
             named = component.node.get(use.name)
-            name = str(named.value).partition(".")[0] if named is not None else ""
-            if name in found:
-                found[name].components.append((component.name, use.name))
-    for path in _SETTINGS:
-        value = loaded.tree.get(*path) if loaded.tree is not None else None
-        if value is not None and value.value in found:
-            found[str(value.value)].settings.append(path)
-    for file, words in _other_files(loaded, folder):
-        for name in found:
-            if name in words:
-                found[name].files.append(file)
-    return found
+            if named is not None:
+                yield component.name, use.name, str(named.value).partition(".")[0]
 
 
 def _other_files(loaded: Loaded, folder: Path) -> Iterator[tuple[str, set[str]]]:
@@ -104,7 +106,7 @@ def users_view(users: Mapping[str, Users]) -> Data:
 # values
 
 
-def fill(forms: Data, loaded: Loaded, path: tuple[str, ...], text: str) -> list[Change]:
+def fill(forms: Forms, loaded: Loaded, path: tuple[str, ...], text: str) -> list[Change]:
     """Gives the value at ``path`` the ``text`` of its field.  An empty text means that no file sets the value."""
     found = _field(forms, path)
     if path[0] == PARAMETERS:
@@ -114,27 +116,28 @@ def fill(forms: Data, loaded: Loaded, path: tuple[str, ...], text: str) -> list[
         return [SetParameter(parameter_path(loaded.root, path[1]), value)]
     if text:
         return [SetValue(path, value_of(found, text, Refused))]
-    if forms["values"].get(".".join(path), {}).get("removed"):
+    value_now = forms.values.get(".".join(path))
+    if value_now is not None and value_now.removed:
         return []
     return [SetValue(path, None)] if _inherited(loaded, path) else take_back(forms, loaded, path)
 
 
-def _field(forms: Data, path: tuple[str, ...]) -> Data:
-    found = field_at(forms, path)
+def _field(forms: Forms, path: tuple[str, ...]) -> FormField:
+    found = forms.field_at(path)
     if found is None:
         raise Refused(f"there is no value '{'.'.join(path)}'", "reload the page", 409)
     return found
 
 
-def take_back(forms: Data, loaded: Loaded, path: tuple[str, ...]) -> list[Change]:
+def take_back(forms: Forms, loaded: Loaded, path: tuple[str, ...]) -> list[Change]:
     """Removes the value at ``path`` from the project's own file.  Its group stays, although it can be empty then."""
     _field(forms, path)
     if path[0] == PARAMETERS:
         return fill(forms, loaded, path, "")
     group, own = path[:-1], loaded.chain[0].node.get(*path[:-1])
-    field = field_at(forms, group) if group else None
+    field = forms.field_at(group) if group else None
     is_last = own is not None and [key for key, _ in own.items()] == [path[-1]]
-    is_group = field is not None and field["type"] == "group" and field["name"] != "pins"
+    is_group = field is not None and field.type == "group" and field.name != "pins"
     if is_last and is_group and not _inherited(loaded, group):
         return [SetValue(group, {})]
     return [RemoveValue(path)]
@@ -152,21 +155,21 @@ def _inherited(loaded: Loaded, path: Sequence[str]) -> bool:
 # components
 
 
-def add(forms: Data, loaded: Loaded, kind: str, name: str, texts: Mapping[str, str]) -> Operation:
+def add(forms: Forms, loaded: Loaded, kind: str, name: str, texts: Mapping[str, str]) -> Operation:
     """Adds a component.  ``texts`` are the texts of its fields by their paths, joined by dots."""
-    form = forms["kinds"].get(kind)
+    form = forms.kinds.get(kind)
     if form is None:
         raise Refused(f"there is no kind '{kind}'", status=404)
-    if form["unusable"]:
-        raise Refused(f"this target cannot have a {kind}", form["unusable"], 409)
+    if form.unusable:
+        raise Refused(f"this target cannot have a {kind}", form.unusable, 409)
     _check_name(name, loaded)
     values: Data = {"kind": kind}
-    known = {".".join(each["path"]): each for each in _all_fields(form["fields"])}
+    known = {".".join(each.path): each for field in form.fields for each in field.all}
     for key, text in sorted(texts.items(), key=lambda each: each[0].count(".")):  # a group before its values
         if key not in known:
             raise Refused(f"a {kind} has no parameter '{key}'", status=404)
         if text:
-            *above, last = known[key]["path"]
+            *above, last = known[key].path
             tree = values
             for step in above:
                 tree = tree.setdefault(step, {})
@@ -179,20 +182,14 @@ def pins_for(request: Request, catalog: Catalog, names: Sequence[str], loaded: L
 
     ``request`` reads the ``.tcf`` with the components.  Empty if it has errors, or if no pins fit.
     """
-    found = load_configuration(request, catalog, Diagnostics(), pins_required=False)
-    if found is None:
+    configuration = load_configuration(request, catalog, Diagnostics(), pins_required=False)
+    if configuration is None:
         return ()
     model = loaded.parts.model
-    period = found.control.period or (model.step if model is not None else None)
-    wanted = [signal for signal, pin in signals_of(found).items() if signal[0] in names and not pin]
-    pins = first_fit(found, period, wanted) if wanted else {}
+    period = configuration.control.period or (model.step if model is not None else None)
+    wanted = [signal for signal, pin in signals_of(configuration).items() if signal[0] in names and not pin]
+    pins = first_fit(configuration, period, wanted) if wanted else {}
     return tuple(SetValue((COMPONENTS, name, "pins", signal), pin) for (name, signal), pin in (pins or {}).items())
-
-
-def _all_fields(fields: Sequence[Data]) -> Iterator[Data]:
-    for each in fields:
-        yield each
-        yield from _all_fields(each.get("fields", ()))
 
 
 def copy(loaded: Loaded, name: str, new: str) -> Operation:
@@ -271,15 +268,15 @@ def _renamed(reference: str, name: str, new: str) -> str:
 
 def _node(loaded: Loaded, name: str) -> Data:
     """The values of a component, with the inherited ones."""
-    found = loaded.tree.get(COMPONENTS, name) if loaded.tree is not None else None
-    if found is None:
+    node = value_at(loaded.tree, COMPONENTS, name)
+    if node is None:
         raise Refused(f"there is no component '{name}'", status=404)
-    values: Data = found.plain()
+    values: Data = node.plain()
     return values
 
 
 def _names(loaded: Loaded) -> list[str]:
-    section = loaded.tree.get(COMPONENTS) if loaded.tree is not None else None
+    section = value_at(loaded.tree, COMPONENTS)
     return [name for name, _ in section.items()] if section is not None else []
 
 

@@ -13,26 +13,26 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from epg.bootstrap import cache_folder
-from epg.catalog.catalog import Catalog, Target, load_catalog
-from epg.check.communication import tools_for
-from epg.check.configuration import Configuration
-from epg.check.middleware import first_middleware
-from epg.dataclass import dataclass
-from epg.diagnostics import Diagnostics
-from epg.documents.tcf import load_tcf_chain, predefined_tcf_names
-from epg.emit.project_files import project_folder
+from epg.generator.bootstrap import cache_folder
+from epg.generator.catalog.catalog import Catalog, Target, load_catalog
+from epg.generator.check.communication import tools_for
+from epg.generator.check.configuration import Configuration
+from epg.generator.check.middleware import first_middleware
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.tcf import load_tcf_chain, predefined_tcf_names
+from epg.generator.emit.project_files import project_folder
+from epg.generator.models.model import Model
+from epg.generator.project import Request, load_configuration
+from epg.generator.resolve.matching import match_ports
+from epg.generator.resolve.resolve import allocate_hardware
+from epg.generator.tools.find_tool import Surroundings, find_tool
+from epg.generator.tools.tools import load_tools
 from epg.graph.wiring import draw_wiring
-from epg.models.model import Model
-from epg.project import Request, load_configuration
-from epg.resolve.matching import match_ports
-from epg.resolve.resolve import allocate_hardware
-from epg.tools.find_tool import Surroundings, find_tool
-from epg.tools.tools import load_tools
 
 
 @dataclass(frozen=True)
-class Choice:
+class PredefinedTarget:
     """A predefined configuration of a robot, or a target alone (a board and a platform).
 
     ``robot`` is empty for a target alone.  ``configuration`` is None for a target alone and for a configuration with
@@ -71,18 +71,18 @@ class Configurations:
         return load_catalog(self._roots, Diagnostics())
 
     @cached_property
-    def choices(self) -> tuple[Choice, ...]:
+    def choices(self) -> tuple[PredefinedTarget, ...]:
         """Predefined configurations first, then targets, each by name."""
         catalog = self.catalog
         found = [self._predefined(name, catalog) for name in predefined_tcf_names(self._roots)]
         bare = [
-            Choice(name, "", target, None, "")
+            PredefinedTarget(name, "", target, None, "")
             for name in catalog.target_names()
             if (target := catalog.find_target(name)) is not None
         ]
         return (*(choice for choice in found if choice is not None), *bare)
 
-    def find(self, name: str) -> Choice | None:
+    def find(self, name: str) -> PredefinedTarget | None:
         return next((choice for choice in self.choices if choice.name == name), None)
 
     def picture(self, name: str) -> str | None:
@@ -130,7 +130,7 @@ class Configurations:
             )
         return entries
 
-    def _count(self, choice: Choice, model: Model | None) -> int:
+    def _count(self, choice: PredefinedTarget, model: Model | None) -> int:
         """The number of model ports that match a component by name.  The result is kept for models with equal ports."""
         if model is None or choice.configuration is None:
             return 0
@@ -140,7 +140,7 @@ class Configurations:
             self._counts[key] = sum(match.proposal is not None for match in found.values())
         return self._counts[key]
 
-    def _predefined(self, file: str, catalog: Catalog) -> Choice | None:
+    def _predefined(self, file: str, catalog: Catalog) -> PredefinedTarget | None:
         """The choice that a ``.tcf`` file of EPG or of the user defines.
 
         None for a ``.tcf`` that names no target: other files extend it.
@@ -154,7 +154,7 @@ class Configurations:
         problems = Diagnostics()
         configuration = load_configuration(request, catalog, problems)
         problem = next((item.message for item in problems if item.severity == "error"), "")
-        return Choice(file.removesuffix(".tcf"), chain[0].path.parent.name, target, configuration, problem)
+        return PredefinedTarget(file.removesuffix(".tcf"), chain[0].path.parent.name, target, configuration, problem)
 
     @cached_property
     def _lacking(self) -> Mapping[str, str]:
@@ -163,7 +163,7 @@ class Configurations:
         tools = load_tools(self._roots, Diagnostics())
         return {name: tool.title for name, tool in tools.items() if find_tool(tool, where).status != "found"}
 
-    def _missing(self, choice: Choice) -> list[str]:
+    def _missing(self, choice: PredefinedTarget) -> list[str]:
         """The titles of the tools that are missing for a build of ``choice``, those of its middleware among them."""
         if choice.configuration is not None:
             needed = tools_for(choice.target, choice.configuration.communication)
@@ -186,7 +186,7 @@ class Project:
     target: Target | None
     own_target: bool = False
 
-    def reason(self, choice: Choice) -> str:
+    def reason(self, choice: PredefinedTarget) -> str:
         """The reason why ``choice`` cannot be taken; empty if it can."""
         if choice.name == self.chosen:
             return ""
@@ -205,7 +205,7 @@ def _not_built(target: Target) -> str:
     return f"EPG can check files for {target.platform.name}, but cannot generate code for it"
 
 
-def _new_reason(choice: Choice, roots: Sequence[Path]) -> str:
+def _new_reason(choice: PredefinedTarget, roots: Sequence[Path]) -> str:
     """The reason why a new project cannot be started with ``choice``; empty if it can."""
     if choice.problem:
         return choice.problem
@@ -217,10 +217,10 @@ def _new_reason(choice: Choice, roots: Sequence[Path]) -> str:
     return ""
 
 
-def _summary(choice: Choice) -> str:
+def _summary(choice: PredefinedTarget) -> str:
     board = choice.target.board.summary
     return f"{choice.robot} on {board}" if choice.robot else f"{board}, every port a topic"
 
 
-def _has_picture(choice: Choice) -> bool:
+def _has_picture(choice: PredefinedTarget) -> bool:
     return choice.target.board.layout is not None and not choice.problem

@@ -7,12 +7,12 @@ import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from epg.catalog.catalog import Catalog
-from epg.check.target_names import proposed_name
 from epg.connect.body import Refused, text
 from epg.connect.projects import Job, find_jobs
-from epg.diagnostics import Diagnostics, UserError
-from epg.new_project import ProjectRequest, project_name, write_project
+from epg.generator.catalog.catalog import Catalog
+from epg.generator.check.target_names import proposed_name
+from epg.generator.diagnostics import Diagnostics, UserError
+from epg.new.new_project import ProjectRequest, project_name, write_project
 
 
 def proposal(model: Path, catalog: Catalog) -> dict[str, str]:
@@ -50,10 +50,10 @@ def create(body: Mapping[str, object], model: Path, user_roots: Sequence[Path]) 
         raise _refusal(problem.diagnostics) from None
     except OSError as error:
         raise Refused(f"cannot write {folder}: {error.strerror or error}", "choose another folder", 409) from None
-    found = Diagnostics()
-    jobs = find_jobs(folder, found)
+    problems = Diagnostics()
+    jobs = find_jobs(folder, problems)
     if not jobs:
-        raise _refusal(found)
+        raise _refusal(problems)
     return jobs
 
 

@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The user's changes that are not saved yet: a list of operations on the files, with undo and redo.
 
+The list has operations, and not only the new texts.  If another program writes a file meanwhile, the operations are
+applied to its new text (:meth:`Draft.rebased`), and the user loses neither change.  A new text alone would overwrite
+the other program's.  An operation that no longer fits raises CannotEdit, and the user chooses.
+
 >>> # draft = Draft(read_snapshot(bindings), read_snapshot(tcf), "version: 1\\nmodel: JIWY\\n")
->>> # draft.do((SetEnds("pwm_pan", (End("motor"),)),), model); draft.undo(); draft.diff()
+>>> # draft.do((SetEnds("pwm_pan", (WireEnd("motor"),)),), model); draft.undo(); draft.diff()
 """
 
 from __future__ import annotations
@@ -13,10 +17,12 @@ from dataclasses import field, replace
 from pathlib import Path
 
 from epg.connect.files import Snapshot
-from epg.dataclass import dataclass
-from epg.edit.bindings import CannotEdit, End, set_ends
-from epg.edit.tcf import Value, remove_value, rename_key, set_value
-from epg.models.model import Model
+from epg.edit.applied import apply_edit
+from epg.edit.bindings import CannotEdit, WireEnd, set_ends
+from epg.edit.tcf import JsonValue, remove_value, rename_key, set_value
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Edit
+from epg.generator.models.model import Model
 
 
 @dataclass(frozen=True)
@@ -27,7 +33,7 @@ class SetEnds:
     """
 
     port: str
-    ends: tuple[End, ...] | None
+    ends: tuple[WireEnd, ...] | None
 
 
 @dataclass(frozen=True)
@@ -35,7 +41,7 @@ class SetValue:
     """Gives the key at ``path`` of the ``.tcf`` a value.  None removes what an extended file has at this key."""
 
     path: tuple[str, ...]
-    value: Value
+    value: JsonValue
 
 
 @dataclass(frozen=True)
@@ -73,7 +79,15 @@ class SetFile:
     after: bytes | None
 
 
-Change = SetEnds | SetValue | RemoveValue | RenameKey | SetParameter | SetFile
+@dataclass(frozen=True)
+class ApplyEdit:
+    """Makes the edit of a message in the file at ``path``: the bindings or the ``.tcf``."""
+
+    path: Path
+    edit: Edit
+
+
+Change = SetEnds | SetValue | RemoveValue | RenameKey | SetParameter | SetFile | ApplyEdit
 Operation = tuple[Change, ...]
 """All changes of one user action; undo and redo treat them as one."""
 
@@ -213,6 +227,8 @@ class Draft:
             elif isinstance(change, SetFile):
                 self._files.setdefault(change.path, (change.before, change.before))
                 texts = replace(texts, files={**texts.files, change.path: change.after})
+            elif isinstance(change, ApplyEdit):
+                texts = self._with_edit(texts, change)
             elif not isinstance(change, SetEnds):
                 file, before = self.tcf.path.name, texts.tcf
                 if before is None:
@@ -230,6 +246,19 @@ class Draft:
                 text = set_ends(texts.bindings, self.bindings.path.name, model, change.port, change.ends)
                 texts = replace(texts, bindings=text)
         return texts
+
+    def _with_edit(self, texts: Texts, change: ApplyEdit) -> Texts:
+        in_bindings = change.path == self.bindings.path
+        before = texts.bindings if in_bindings else texts.tcf
+        after = apply_edit(before, change.edit) if before is not None else None
+        if after is None:
+            edit = change.edit
+            where = f"{change.path.name}:{edit.span.line}"
+            gone = (
+                f"'{edit.old}' any more that '{edit.new}' could replace" if edit.old else f"such line: {edit.sentence}"
+            )
+            raise CannotEdit(f"{where}: there is no {gone}")
+        return replace(texts, bindings=after) if in_bindings else replace(texts, tcf=after)
 
     def _with_parameter(self, text: str | None, change: SetParameter) -> str:
         file = self.bindings.path.name

@@ -9,29 +9,31 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from epg.catalog.catalog import Catalog, load_catalog
 from epg.connect.body import Refused
 from epg.connect.component_edits import Users, pins_for, users_of, users_view
 from epg.connect.configurations import Project
-from epg.connect.draft import Draft, Operation, SetFile, SetValue
+from epg.connect.draft import ApplyEdit, Draft, Operation, SetFile, SetValue
 from epg.connect.files import Snapshot, Watch, read_snapshot, save
+from epg.connect.form_fields import Forms
 from epg.connect.forms import forms_of
 from epg.connect.literal_calls import FILE
-from epg.connect.loaded import Models, load, tcf_path
+from epg.connect.loaded import Models, load, tcf_path, value_at
+from epg.connect.moved_files import FileChange, file_changes
 from epg.connect.moving import TcfMove, plan_move
 from epg.connect.pinout import problems_view, signals_view
-from epg.connect.project_files import FileChange, file_changes
 from epg.connect.projects import Job, find_jobs
-from epg.connect.unused import unused_parts
+from epg.connect.unused_parts import unused_parts
 from epg.connect.view import view_of
-from epg.dataclass import dataclass
-from epg.diagnostics import Diagnostics
-from epg.documents.yaml_file import parse_yaml
+from epg.edit.applied import edits_of
 from epg.edit.bindings import CannotEdit
 from epg.edit.scalars import scalar_text
-from epg.emit.leftovers import remove_leftovers
-from epg.models import load_model
-from epg.project import Request
+from epg.generator.catalog.catalog import Catalog, load_catalog
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.yaml_file import parse_yaml
+from epg.generator.emit.leftovers import remove_leftovers
+from epg.generator.importers import load_model
+from epg.generator.project import Request
 
 
 @dataclass(frozen=True)
@@ -75,7 +77,7 @@ class Editor:
         self._tcf_path = tcf_path(job.request) or Path(os.path.abspath(job.request.tcf))
         self._models = Models()
         self._catalog: Catalog | None = None
-        self._forms: dict[str, Any] | None = None
+        self._forms: Forms | None = None
         for path in (job.request.bindings, self._tcf_path):
             remove_leftovers(Path(os.path.realpath(path)))
         self.draft = self._new_draft()
@@ -153,11 +155,10 @@ class Editor:
         return self._catalog
 
     @property
-    def forms(self) -> dict[str, Any]:
+    def forms(self) -> Forms:
         """The forms of the settings and components."""
         if self._forms is None:
             self._forms = forms_of(self.loaded, self.catalog, owns_tcf=self.owns_tcf)
-            self._forms["locked"] = "" if self.owns_tcf else self.project().fixed
         return self._forms
 
     @property
@@ -217,7 +218,7 @@ class Editor:
     def _middleware(self, text: str) -> str | None:
         """The middleware that a text of the ``.tcf`` states."""
         root = parse_yaml(text, self._tcf_path.name, Diagnostics())
-        node = root.get("communication", "middleware") if root is not None else None
+        node = value_at(root, "communication", "middleware")
         return None if node is None else str(node.value)
 
     def unused_parts(self) -> list[list[str]]:
@@ -232,15 +233,18 @@ class Editor:
     def show(self) -> dict[str, Any]:
         """The part of the state that belongs to this target."""
         why_not = self._why_not()
+        shown = view_of(self.loaded)
+        for message, changes in zip(shown["diagnostics"], self.proposed_edits()):
+            message["edits"] = [change.edit.data() for change in changes]
         return {
             "project": {"name": self.job.request.name, "folder": str(self._folder()), "files": self._files()},
-            **view_of(self.loaded),
+            **shown,
             "pins": {
                 "signals": signals_view(self.loaded),
                 "problems": problems_view(self.loaded),
                 "why_not": "" if self.owns_tcf else self.project().fixed,
             },
-            "forms": self.forms,
+            "forms": {**self.forms.data(), "locked": "" if self.owns_tcf else self.project().fixed},
             "users": users_view(self.users),
             "ask": self.ask,
             "unused": [".".join(part) for part in self.unused_parts()],
@@ -255,6 +259,24 @@ class Editor:
             "editable": not why_not,
             "why_not": why_not,
         }
+
+    def proposed_edits(self) -> list[list[ApplyEdit]]:
+        """For each message the edits that it proposes, of files that can be changed here."""
+        files = {os.path.abspath(path): (path, text) for path, text in self.draft.drafts().items()}
+        if not self.owns_tcf:
+            files.pop(os.path.abspath(self.draft.tcf.path), None)
+
+        def text_of(file: str) -> str | None:
+            return files.get(os.path.abspath(file), (None, None))[1]
+
+        return [
+            [
+                ApplyEdit(files[os.path.abspath(edit.span.file)][0], edit)
+                for edit in edits_of(diagnostic, text_of)
+                if edit.span.text is None
+            ]
+            for diagnostic in self.loaded.diagnostics
+        ]
 
     def _why_not(self) -> str:
         """The reason why ports cannot be connected; empty if they can."""

@@ -7,6 +7,7 @@ Each function takes the open target and the body of the request, makes one step 
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Mapping, Sequence
 
 from epg.connect.body import Body, Refused, bodies, ends, keys, names, text
@@ -15,7 +16,7 @@ from epg.connect.draft import RemoveValue, SetEnds, SetValue
 from epg.connect.editor import Editor
 from epg.connect.pinout import chosen_pin, first_pins
 from epg.connect.view import proposals_of
-from epg.edit.bindings import End
+from epg.edit.bindings import WireEnd
 from epg.edit.parameters import PARAMETERS
 
 
@@ -54,7 +55,18 @@ def _accept(editor: Editor, body: Body) -> None:
         if name not in proposals:
             raise Refused(f"there is no proposal for '{name}'", "connect it by hand")
     if wanted:
-        editor.edit(tuple(SetEnds(name, (End(proposals[name]),)) for name in wanted))
+        editor.edit(tuple(SetEnds(name, (WireEnd(proposals[name]),)) for name in wanted))
+
+
+def _apply(editor: Editor, body: Body) -> None:
+    """Makes the edit that a message proposes, named by its position and its new text."""
+    wanted = body.get("file"), body.get("line"), body.get("column"), body.get("new")
+    for change in itertools.chain.from_iterable(editor.proposed_edits()):
+        span = change.edit.span
+        if (span.file, span.line, span.column, change.edit.new) == wanted:
+            editor.edit((change,))
+            return
+    raise Refused("no message proposes this change any more", "see the messages", 409)
 
 
 def _leave_out(editor: Editor, body: Body) -> None:
@@ -141,6 +153,7 @@ EDITS: dict[str, Callable[[Editor, Body], None]] = {
     "rewire": _rewire,
     "disconnect": _disconnect,
     "accept": _accept,
+    "apply": _apply,
     "leave_out": _leave_out,
     "unset": _unset,
     "choose_pin": _choose_pin,

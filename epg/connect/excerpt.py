@@ -9,7 +9,7 @@ from typing import Any
 
 from epg.connect.body import Refused
 from epg.connect.files import read_snapshot
-from epg.documents.text_file import Drafts
+from epg.generator.documents.text_file import Drafts
 
 AROUND = 10
 """The number of lines that are shown before and after the line of the message."""

@@ -12,9 +12,9 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 
-from epg.dataclass import dataclass
-from epg.documents.text_file import MAX_BYTES
-from epg.emit.leftovers import replace_file
+from epg.generator.dataclass import dataclass
+from epg.generator.documents.text_file import MAX_BYTES
+from epg.generator.emit.leftovers import replace_file
 
 BOM = b"\xef\xbb\xbf"
 
@@ -116,7 +116,7 @@ class Watch:
 
     def changed(self) -> list[Path]:
         """The files that have changed since the last call, sorted."""
-        found = []
+        paths = []
         for path, (status, digest) in self._known.items():
             now = _status(path)
             if now == status:
@@ -124,16 +124,16 @@ class Watch:
             contents = _digest(path)
             self._known[path] = (now, contents)
             if contents != digest:
-                found.append(path)
-        return sorted(found)
+                paths.append(path)
+        return sorted(paths)
 
 
 def _status(path: Path) -> tuple[int, ...]:
     try:
-        found = path.stat()
+        status = path.stat()
     except (OSError, ValueError):
         return ()
-    return (found.st_mtime_ns, found.st_ctime_ns, found.st_size, found.st_ino)
+    return (status.st_mtime_ns, status.st_ctime_ns, status.st_size, status.st_ino)
 
 
 def _digest(path: Path) -> bytes:

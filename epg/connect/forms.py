@@ -6,64 +6,59 @@ descriptions of ``component.yaml``, ``middleware.yaml`` and ``schemas/tcf.schema
 writes it in a ``.tcf``, with the file and line that have it.
 
 >>> # forms = forms_of(loaded, catalog, owns_tcf=True)
->>> # forms["values"]["components.pwm_pan.frequency"]["text"]  ->  "20 kHz"
+>>> # forms.values["components.pwm_pan.frequency"].text  ->  "20 kHz"
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from epg.catalog.catalog import Catalog, Kind, Target
-from epg.catalog.middleware import Middleware
-from epg.check.compose import communication_schema, component_schema, console_schema
-from epg.check.configuration import Component
-from epg.check.fail_safe import can_disable
-from epg.check.merge import merge_chain
-from epg.check.middleware import offered
-from epg.check.uses import possible_references
-from epg.connect.loaded import Loaded
-from epg.diagnostics import Diagnostics
-from epg.documents.schema import load_schema
-from epg.documents.tcf import TcfFile
-from epg.documents.yaml_file import parse_yaml
+from epg.connect.form_fields import FieldPath, FieldSet, FormField, Forms, FormValue, KindForm, SettingsSection
+from epg.connect.loaded import Loaded, value_at
 from epg.edit.parameters import PARAMETERS, parameter_path
 from epg.edit.scalars import scalar_text
-from epg.quantity import show, units_of
-from epg.source import Span, YamlNode
-
-Data = dict[str, Any]
-Path_ = tuple[str, ...]
+from epg.generator.catalog.catalog import Catalog, Kind, Target
+from epg.generator.catalog.middleware import Middleware
+from epg.generator.check.compose import communication_schema, component_schema, console_schema
+from epg.generator.check.configuration import Component
+from epg.generator.check.fail_safe import can_disable
+from epg.generator.check.merge import merge_chain
+from epg.generator.check.middleware import offered
+from epg.generator.check.uses import possible_references
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.schema import load_schema
+from epg.generator.documents.yaml_file import parse_yaml
+from epg.generator.quantity import show, units_of
+from epg.generator.source import Span, YamlNode
 
 CONSOLE = "console"
 _MOST_PARAMETERS = 300
 """The largest number of parameters of a model that get fields: each new state of the session has all fields."""
 _CONVERSION = ("scale", "offset", "unit", "limits")
+_ALL_INTEGERS = (str(-(1 << 31)), str((1 << 31) - 1))
 _SCALARS = {"number": "number", "integer": "integer", "boolean": "boolean", "string": "text"}
 
 
-def forms_of(loaded: Loaded, catalog: Catalog, *, owns_tcf: bool) -> Data:
-    """The forms of the target: ``kinds`` with the fields of their components, ``settings``, and all ``values``.
-
-    The keys of ``values`` are the keys in the ``.tcf``, joined by dots.  A value that no file has is missing there:
-    the ``default`` of its field holds.  ``left_out`` are the inherited components that the own file removes.
-    """
+def forms_of(loaded: Loaded, catalog: Catalog, *, owns_tcf: bool) -> Forms:
+    """The forms of the target: those of all kinds of components, its settings, and all values."""
     root, target, components = loaded.tree, loaded.target, loaded.components
     if root is None:
-        return {"kinds": {}, "settings": [], "values": {}, "left_out": []}
+        return Forms()
     kinds = {name: kind for name in catalog.kind_names() if (kind := catalog.find_kind(name)) is not None}
     kind_forms = {name: _kind_form(kind, target, components) for name, kind in kinds.items()}
     settings = [*_settings(root, target, components, catalog), *_parameters(loaded)]
     places = _Places(loaded, owns_tcf)
     values = places.values(("components", name) for name in _component_names(root))
     for section in settings:
-        values |= places.values(tuple(field["path"]) for field in section["fields"])
+        values |= places.values(field.path for field in section.fields)
     values |= _parameter_values(loaded)
     own = loaded.chain[0].node.get("components") if loaded.chain else None
     left_out = [name for name, node in own.items() if node.value is None] if own is not None else []
-    return {"kinds": kind_forms, "settings": settings, "values": values, "left_out": left_out}
+    return Forms(kind_forms, settings, values, left_out)
 
 
 def _component_names(root: YamlNode) -> list[str]:
@@ -74,43 +69,38 @@ def _component_names(root: YamlNode) -> list[str]:
 # fields
 
 
-def _kind_form(kind: Kind, target: Target | None, components: Mapping[str, Component]) -> Data:
-    """The form of a component of ``kind``: paths are those below the component.
-
-    ``one_of`` are sets of fields of which a component must set one, or ``several`` of them.  ``unusable`` says why the
-    target cannot have such a component, and is empty if it can.
-    """
+def _kind_form(kind: Kind, target: Target | None, components: Mapping[str, Component]) -> KindForm:
     schema = component_schema(kind, with_pins=target is not None and target.has_pins)
-    properties = {key: child for key, child in schema["properties"].items() if key != "kind"}
-    for use in kind.uses:
-        properties[use.name] = {
-            **properties[use.name],
-            "choices": possible_references(use, {name: each.kind for name, each in components.items()}),
-        }
-    if kind.claims and (target is None or not target.platform.has_nodes):
-        del properties["node"]
-    if target is not None and not target.has_pins:
-        properties.pop("pins", None)
+    properties = _values_of_kind(schema["properties"], kind, target, components)
     first = ("pins", *(use.name for use in kind.uses))
     keys = sorted(properties, key=lambda key: key not in first)
-    fields = [_field((key,), properties[key], key in schema["required"]) for key in keys]
-    for field in fields:
-        if field["path"] == ["pins"]:
-            field.pop("example", None)
-            for pin in field["fields"]:
-                pin |= {"type": "pin", "example": _pin_example(target)}
-        if field["path"][0] in _CONVERSION:
-            field["section"] = "Conversion of the value"
-    return {
-        "group": kind.group,
-        "summary": kind.summary,
-        "fields": fields,
-        "one_of": [
-            *({"names": list(names), "several": False} for names in kind.exactly_one),
-            *({"names": list(names), "several": True} for names in kind.at_least_one),
-        ],
-        "unusable": _unusable(kind, target),
-    }
+    fields = (_field((key,), properties[key], key in schema["required"]) for key in keys)
+    one_of = [FieldSet(tuple(names), several=False) for names in kind.exactly_one]
+    one_of += [FieldSet(tuple(names), several=True) for names in kind.at_least_one]
+    shown = tuple(_field_of_kind(field, target) for field in fields)
+    return KindForm(kind.group, kind.summary, shown, tuple(one_of), _unusable(kind, target))
+
+
+def _field_of_kind(field: FormField, target: Target | None) -> FormField:
+    if field.path == ("pins",):
+        pins = (replace(pin, type="pin", example=_pin_example(target)) for pin in field.fields)
+        return replace(field, example="", fields=tuple(pins))
+    return replace(field, section="Conversion of the value") if field.path[0] in _CONVERSION else field
+
+
+def _values_of_kind(
+    schemas: Mapping[str, Any], kind: Kind, target: Target | None, components: Mapping[str, Component]
+) -> dict[str, Any]:
+    """The schemas of the values that a component of ``kind`` can have on this target, and the components to name."""
+    values = {key: child for key, child in schemas.items() if key != "kind"}
+    kinds = {name: each.kind for name, each in components.items()}
+    for use in kind.uses:
+        values[use.name] = {**values[use.name], "choices": possible_references(use, kinds)}
+    if kind.claims and (target is None or not target.platform.has_nodes):
+        del values["node"]
+    if target is not None and not target.has_pins:
+        values.pop("pins", None)
+    return values
 
 
 def _pin_example(target: Target | None) -> str:
@@ -126,31 +116,33 @@ def _unusable(kind: Kind, target: Target | None) -> str:
     return f"{target.name} does not offer: {', '.join(lacking)}" if lacking else ""
 
 
-def _field(path: Path_, schema: Mapping[str, Any], required: bool = False) -> Data:
-    """A field for a value of ``schema``.  Keys without a value are left out."""
+def _field(path: FieldPath, schema: Mapping[str, Any], required: bool = False) -> FormField:
+    """A field for a value of ``schema``."""
     kind = _type_of(schema)
-    field: Data = {"path": list(path), "name": path[-1], "type": kind, "description": schema.get("description", "")}
-    if required:
-        field["required"] = True
-    if schema.get("default") not in (None, ""):
-        field["default"] = _text(schema["default"])
-    if "x-quantity" in schema and schema["x-quantity"] != "ratio":
-        field["units"] = units_of(schema["x-quantity"])
-    if "enum" in schema:
-        field["choices"] = [_text(value) for value in schema["enum"]]
-    elif "choices" in schema:
-        field["choices"] = schema["choices"]
-    limits = [str(schema[key]) if key in schema else "" for key in ("minimum", "maximum")]
-    if kind in ("number", "integer") and any(limits) and "(" not in field["description"]:
-        low, high = limits
-        words = f"{low} to {high}" if low and high else f"at least {low}" if low else f"at most {high}"
-        field["limits"] = words if (low, high) != (str(-(1 << 31)), str((1 << 31) - 1)) else ""
-    if schema.get("examples"):
-        field["example"] = _text(schema["examples"][0])
-    if kind == "group":
-        wanted = schema.get("required", ())
-        field["fields"] = [_field((*path, key), child, key in wanted) for key, child in schema["properties"].items()]
-    return {key: value for key, value in field.items() if value != ""}
+    below = schema["properties"] if kind == "group" else {}
+    needed = schema.get("required", ())
+    return FormField(
+        path,
+        kind,
+        description=schema.get("description", ""),
+        required=required,
+        default=_text(schema["default"]) if schema.get("default") is not None else "",
+        units=units_of(schema["x-quantity"]) if kind == "quantity" else (),
+        choices=[_text(value) for value in schema["enum"]] if kind == "choice" else schema.get("choices"),
+        limits=_limits(schema) if kind in ("number", "integer") else "",
+        example=_text(schema["examples"][0]) if schema.get("examples") else "",
+        fields=tuple(_field((*path, key), child, key in needed) for key, child in below.items()),
+    )
+
+
+def _limits(schema: Mapping[str, Any]) -> str:
+    """The limits of a number in words; empty if its description has them, or if they are those of all integers."""
+    low, high = (str(schema.get(key, "")) for key in ("minimum", "maximum"))
+    if "(" in schema.get("description", "") or (low, high) == _ALL_INTEGERS:
+        return ""
+    if low and high:
+        return f"{low} to {high}"
+    return f"at least {low}" if low else f"at most {high}" if high else ""
 
 
 def _type_of(schema: Mapping[str, Any]) -> str:
@@ -166,29 +158,12 @@ def _type_of(schema: Mapping[str, Any]) -> str:
     return _SCALARS.get(str(schema.get("type")), "yaml")
 
 
-def field_at(forms: Data, path: Sequence[str]) -> Data | None:
-    """The field of the value at ``path``; None if the target has no such field."""
-    fields = [field for section in forms["settings"] for field in section["fields"]]
-    wanted = list(path)
-    if path[0] == "components" and len(path) > 2:
-        kind = forms["values"].get(f"components.{path[1]}.kind", {}).get("text", "")
-        fields = forms["kinds"][kind]["fields"] if kind in forms["kinds"] else []
-        wanted = wanted[2:]
-    return next((field for field in _flat(fields) if field["path"] == wanted), None)
-
-
-def _flat(fields: Iterable[Data]) -> Iterator[Data]:
-    for field in fields:
-        yield field
-        yield from _flat(field.get("fields", ()))
-
-
 # settings
 
 
 def _settings(
     root: YamlNode, target: Target | None, components: Mapping[str, Component], catalog: Catalog
-) -> list[Data]:
+) -> list[SettingsSection]:
     """The sections of a ``.tcf`` beside its components, with the keys that have an effect on this target."""
     whole = load_schema("tcf")["properties"]
     sections = [("Control loop", _below("control", _control(whole["control"], components)))]
@@ -197,36 +172,36 @@ def _settings(
     if target is not None and not target.platform.simulates_plant and target.clocks:
         sections.append(("Clocks of the chip", _clocks(target)))
     return [
-        {"title": title, "fields": [_field(path, schema, path == ("node",)) for path, schema in fields.items()]}
+        SettingsSection(title, tuple(_field(path, schema, path == ("node",)) for path, schema in fields.items()))
         for title, fields in sections
     ]
 
 
-def _parameters(loaded: Loaded) -> list[Data]:
+def _parameters(loaded: Loaded) -> list[SettingsSection]:
     """The section with the parameters of the model, whose values are in the bindings; empty if there are too many."""
     model = loaded.parts.model
     if model is None or not 0 < len(model.parameters) <= _MOST_PARAMETERS:
         return []
     fields = []
     for parameter in model.parameters:
-        field = {"path": [PARAMETERS, parameter.name], "name": parameter.name, "type": "number"}
         unit = f"in {parameter.unit}" if parameter.unit else "without a unit"
-        field |= {"description": f"exported value {parameter.value:g}, {unit}", "default": repr(parameter.value)}
-        fields.append(field)
-    return [{"title": "Parameters of the model", "fields": fields}]
+        description = f"exported value {parameter.value:g}, {unit}"
+        path = (PARAMETERS, parameter.name)
+        fields.append(FormField(path, "number", description, default=repr(parameter.value)))
+    return [SettingsSection("Parameters of the model", tuple(fields))]
 
 
-def _parameter_values(loaded: Loaded) -> Data:
-    found: Data = {}
+def _parameter_values(loaded: Loaded) -> dict[str, FormValue]:
+    values = {}
     for parameter in loaded.parts.model.parameters if loaded.parts.model is not None else ():
         node = loaded.root.get(*parameter_path(loaded.root, parameter.name)) if loaded.root is not None else None
         if node is not None:
-            place = {"how": "own", "file": node.span.file, "line": node.span.line, "own": True}
-            found[f"{PARAMETERS}.{parameter.name}"] = {"text": _node_text(node), **place}
-    return found
+            value = FormValue(_node_text(node), "own", node.span.file, node.span.line, own=True)
+            values[f"{PARAMETERS}.{parameter.name}"] = value
+    return values
 
 
-def _below(section: str, schemas: Mapping[str, Any]) -> dict[Path_, Any]:
+def _below(section: str, schemas: Mapping[str, Any]) -> dict[FieldPath, Any]:
     return {(section, key): schema for key, schema in schemas.items()}
 
 
@@ -237,7 +212,7 @@ def _control(schema: Mapping[str, Any], components: Mapping[str, Component]) -> 
 
 def _communication(
     root: YamlNode, target: Target | None, components: Mapping[str, Component], catalog: Catalog
-) -> dict[Path_, Any]:
+) -> dict[FieldPath, Any]:
     if target is None:
         return _below("communication", load_schema("tcf")["properties"]["communication"]["properties"])
     offers = offered(target, catalog)
@@ -276,13 +251,13 @@ def _without_effect(middleware: Middleware, target: Target, offers: Mapping[str,
         yield "usb"
 
 
-def _clocks(target: Target) -> dict[Path_, Any]:
+def _clocks(target: Target) -> dict[FieldPath, Any]:
     schema = load_schema("tcf")["properties"]["clocks"]["additionalProperties"]
-    found: dict[Path_, Any] = {}
+    clocks: dict[FieldPath, Any] = {}
     for name, clock in target.clocks.items():
         default = {"default": show(clock.frequency, "frequency")} if clock.frequency is not None else {}
-        found["clocks", name] = {**schema, "description": clock.title, **default}
-    return found
+        clocks["clocks", name] = {**schema, "description": clock.title, **default}
+    return clocks
 
 
 # values
@@ -292,7 +267,6 @@ class _Places:
     """The values of a target in its files.  ``below`` are the values without the target's own file."""
 
     def __init__(self, loaded: Loaded, owns_tcf: bool) -> None:
-        self._chain: Sequence[TcfFile] = loaded.chain
         self._root = loaded.tree
         self._own = loaded.chain[0].node if loaded.chain and owns_tcf else None
         self._below = merge_chain(loaded.chain[1:]) if len(loaded.chain) > 1 else None
@@ -300,40 +274,36 @@ class _Places:
         self._own_file = str(loaded.chain[0].path) if loaded.chain and owns_tcf else ""
         self._roots = [root / "robots" for root in loaded.request.roots]
 
-    def values(self, paths: Iterable[Path_]) -> Data:
-        found: Data = {}
+    def values(self, paths: Iterable[FieldPath]) -> dict[str, FormValue]:
+        values: dict[str, FormValue] = {}
         for path in paths:
-            self._add(path, found)
-        return found
+            self._add(path, values)
+        return values
 
-    def _add(self, path: Path_, found: Data) -> None:
+    def _add(self, path: FieldPath, values: dict[str, FormValue]) -> None:
         """The value at ``path``, and those below it."""
-        node = self._root.get(*path) if self._root is not None else None
-        own = self._own.get(*path) if self._own is not None else None
-        below = self._below.get(*path) if self._below is not None else None
-        if node is None and own is None:
+        node = value_at(self._root, *path)
+        own = value_at(self._own, *path)
+        below = value_at(self._below, *path)
+        removed = own is not None and own.value is None
+        stated = own if removed else node
+        if stated is None:
             return
-        entry: Data = {"text": _node_text(node) if node is not None else ""}
-        stated = own if own is not None and own.value is None else node
-        assert stated is not None
-        entry |= self._origin(self._span(path, stated))
+        value = self._value(node, self._span(path, stated))
         if own is not None:
-            entry["own"] = True
-            if below is not None:
-                entry["back"] = {"text": _node_text(below), **self._origin(below.span)}
-        if own is not None and own.value is None:
-            entry["removed"] = True
-        found[".".join(path)] = entry
+            back = self._value(below, below.span) if below is not None else None
+            value = replace(value, own=True, back=back, removed=removed)
+        values[".".join(path)] = value
         keys = dict.fromkeys(key for each in (node, own) if each is not None for key, _ in each.items())
         for key in keys:
-            self._add((*path, key), found)
+            self._add((*path, key), values)
 
-    def _span(self, path: Path_, node: YamlNode) -> Span:
-        above = self._root.get(*path[:-1]) if self._root is not None else None
+    def _span(self, path: FieldPath, node: YamlNode) -> Span:
+        above = value_at(self._root, *path[:-1])
         return above.key_span(path[-1]) if above is not None and path[-1] in above and node.is_mapping else node.span
 
-    def _origin(self, span: Span) -> Data:
-        """The file and line of a value.  ``how`` is "own", "file", "epg", or "call" for an argument in CMake."""
+    def _value(self, node: YamlNode | None, span: Span) -> FormValue:
+        """The value of a node, or an empty one without a node, in the file and line of ``span``."""
         path = Path(span.file)
         if span.file == self._own_file:
             how = "own"
@@ -341,7 +311,7 @@ class _Places:
             how = "call"
         else:
             how = "epg" if any(root in path.parents for root in self._roots) else "file"
-        return {"how": how, "file": span.file, "line": span.line}
+        return FormValue(_node_text(node) if node is not None else "", how, span.file, span.line)
 
 
 def _node_text(node: YamlNode) -> str:
@@ -361,17 +331,17 @@ def _flow(value: object) -> str:
     return scalar_text(value)
 
 
-def value_of(field: Data, text: str, refuse: Callable[[str], Exception]) -> object:
+def value_of(field: FormField, text: str, refuse: Callable[[str], Exception]) -> object:
     """The value that ``text`` in a field means.  A number that is none stays a text, which ``epg check`` reports."""
-    if field["type"] in ("yaml", "group"):
+    if field.type in ("yaml", "group"):
         problems = Diagnostics()
-        node = parse_yaml(text, field["name"], problems)
+        node = parse_yaml(text, field.name, problems)
         if node is None or problems.has_errors:
             raise refuse(next(iter(problems)).message if problems.has_errors else "this is not YAML")
         return node.plain()
-    if field["type"] == "boolean":
+    if field.type == "boolean":
         return {"true": True, "false": False}.get(text, text)
-    if field["type"] in ("number", "integer", "pin", "ratio", "choice"):
+    if field.type in ("number", "integer", "pin", "ratio", "choice"):
         return _number(text)
     return text
 

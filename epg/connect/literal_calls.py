@@ -14,8 +14,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import field
 from pathlib import Path
 
-from epg.dataclass import dataclass
-from epg.source import Span
+from epg.generator.dataclass import dataclass
+from epg.generator.source import Span
 
 FILE = "CMakeLists.txt"
 MAX_FOLDERS = 200
@@ -61,6 +61,20 @@ class Unknown:
     hint: str = ""
 
 
+def _tokens(text: str, path: Path) -> Iterator[tuple[re.Match[str] | None, str, Span]]:
+    """The tokens of ``text`` without spaces and comments.  The first that is not complete is None, and the last."""
+    at, line, before = 0, 1, 0
+    while at < len(text):
+        match = _TOKEN.match(text, at)
+        start = at if match is None else match.start(match.lastgroup or 0)
+        line, before = line + text.count("\n", before, start), start
+        column = start - text.rfind("\n", 0, start)
+        written = match[match.lastgroup or 0] if match else text[at]
+        at = match.end() if match else len(text)
+        if match is None or not match["space"]:
+            yield match, written, Span(str(path), line, column, column + len(written.split("\n")[0] or " "))
+
+
 def not_literal(word: Word) -> Unknown:
     return Unknown(word.span, f"only CMake can evaluate '{word.written}'")
 
@@ -92,20 +106,26 @@ class LiteralCalls:
         if folder in self._read or len(self._read) >= MAX_FOLDERS:
             return
         self._read.add(folder)
+        for name, span, words in self._outside_blocks(text, path):
+            if name == "set" and words and words[0].text == "EPG_TARGETS_PATH":
+                roots = tuple(root for word in words[1:] for root in (word.text or "").split(";"))
+            else:
+                self._command(Call(name, words, folder, roots, span))
+
+    def _outside_blocks(self, text: str, path: Path) -> Iterator[tuple[str, Span, tuple[Word, ...]]]:
+        """The commands that are carried out once.  The calls of targets inside loops and functions are reported."""
         blocks: list[str] = []
         for name, span, words in self._commands(text, path):
             block = _REPEATING.fullmatch(name)
-            if block and not block[1]:
+            if block and block[1]:
+                blocks = blocks[:-1]
+            elif block:
                 blocks.append(name)
-            elif block and blocks:
-                blocks.pop()
-            elif blocks and name == CALLS[0]:
+            elif not blocks:
+                yield name, span, words
+            elif name == CALLS[0]:
                 message = f"this call is inside {blocks[-1]}(): only CMake can evaluate it"
                 self.unknown.append(Unknown(span, message))
-            elif not blocks and words and name == "set" and words[0].text == "EPG_TARGETS_PATH":
-                roots = tuple(root for word in words[1:] for root in (word.text or "").split(";"))
-            elif not blocks:
-                self._command(Call(name, words, folder, roots, span))
 
     def _command(self, call: Call) -> None:
         first = call.words[0] if call.words else None
@@ -121,18 +141,11 @@ class LiteralCalls:
 
     def _commands(self, text: str, path: Path) -> Iterator[tuple[str, Span, tuple[Word, ...]]]:
         """The commands of ``text``, their names in lower case.  The first syntax error is reported and ends them."""
-        name, opening, words, depth, at, line, before = "", Span(str(path)), list[Word](), 0, 0, 1, 0
-        while at < len(text):
-            match = _TOKEN.match(text, at)
-            start = at if match is None else match.start(match.lastgroup or 0)
-            line, before = line + text.count("\n", before, start), start
-            column = start - text.rfind("\n", 0, start)
-            written = match[match.lastgroup or 0] if match else text[at]
-            span = Span(str(path), line, column, column + len(written.split("\n")[0] or " "))
+        name, opening, words, depth = "", Span(str(path)), list[Word](), 0
+        for match, written, span in _tokens(text, path):
             if match is None:
                 self.unknown.append(Unknown(span, "the closing quote or bracket is missing"))
                 return
-            at = match.end()
             if match["paren"] == "(":
                 depth += 1
             elif match["paren"] == ")" and depth:
@@ -140,9 +153,9 @@ class LiteralCalls:
                 if not depth:
                     yield name, opening, tuple(words)
                     words = []
-            elif not match["space"] and depth:
+            elif depth:
                 words.append(Word(self._text(match, path.parent), written, span))
-            elif not match["space"]:
+            else:
                 name, opening = written.lower(), span
         if depth:
             self.unknown.append(Unknown(opening, "the closing parenthesis is missing"))

@@ -10,31 +10,30 @@ from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
 
-from epg.catalog.catalog import Catalog, Kind, Target, load_catalog
-from epg.catalog.parameter import typed_value
-from epg.check.bindings import Conversion
-from epg.check.configuration import Component, Configuration, check_components
-from epg.check.merge import apply_settings, merge_chain
-from epg.check.topic_ends import is_made_for
 from epg.connect.files import Watch
 from epg.connect.places import Places
-from epg.dataclass import dataclass
-from epg.diagnostics import Diagnostic, Diagnostics
-from epg.documents.tcf import TcfFile, find_tcf, load_tcf_chain, settings_node
-from epg.documents.text_file import read_text
-from epg.documents.yaml_file import parse_yaml
-from epg.edit.bindings import ends_of
-from epg.models import Model, load_model
-from epg.models.folders import searched_folders
-from epg.models.neighbours import Neighbours
-from epg.project import Parts, Request, hardware_of, load_configuration, load_parts
-from epg.resolve.allocation import Hardware, as_written
-from epg.resolve.claims import component_claims, tick_claims
-from epg.resolve.first_fit import Signal, complete_claims, signals_of
-from epg.resolve.matching import Match, match_ports
-from epg.resolve.pin_options import PinOption, pin_options
-from epg.resolve.resolve import allocate_claims, allocate_hardware
-from epg.source import Span, YamlNode
+from epg.edit.ends import WireEnd, ends_of, references_of
+from epg.generator.catalog.catalog import Catalog, Kind, Target, load_catalog
+from epg.generator.catalog.parameter import typed_value
+from epg.generator.check.bindings import Conversion
+from epg.generator.check.configuration import Component, Configuration, check_components
+from epg.generator.check.merge import apply_settings, merge_chain
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostic, Diagnostics
+from epg.generator.documents.tcf import TcfFile, find_tcf, load_tcf_chain, settings_node
+from epg.generator.documents.text_file import read_text
+from epg.generator.documents.yaml_file import parse_yaml
+from epg.generator.importers import Model, load_model
+from epg.generator.models.folders import searched_folders
+from epg.generator.models.neighbours import Neighbours
+from epg.generator.project import Parts, Request, hardware_of, load_configuration, load_parts
+from epg.generator.resolve.allocation import Assignments, as_written
+from epg.generator.resolve.claims import component_claims, tick_claims
+from epg.generator.resolve.first_fit import ClaimSignal, complete_claims, signals_of
+from epg.generator.resolve.matching import Match, match_ports
+from epg.generator.resolve.pin_options import PinOption, pin_options
+from epg.generator.resolve.resolve import allocate_claims, allocate_hardware
+from epg.generator.source import Span, YamlNode
 
 _MOST_WATCHED = 2000
 """The limit of files and folders watched for a model that cannot be read: a change of any of them may repair it."""
@@ -71,7 +70,7 @@ class Loaded:
         """Board and platform, even if other values of the ``.tcf`` have errors."""
         if self.parts.configuration is not None:
             return self.parts.configuration.target
-        name = self.tree.get("target") if self.tree is not None else None
+        name = value_at(self.tree, "target")
         return self.catalog.find_target(str(name.value)) if name is not None else None
 
     @cached_property
@@ -79,7 +78,7 @@ class Loaded:
         """All components of a known kind.  One with an error has its parameters' defaults, and no ports of lists."""
         if self.parts.configuration is not None:
             return self.parts.configuration.components
-        section = self.tree.get("components") if self.tree is not None else None
+        section = value_at(self.tree, "components")
         if self.tree is None or section is None or not section.is_mapping:
             return {}
         described = [(name, node) for name, node in section.items() if node.is_mapping]
@@ -87,14 +86,14 @@ class Loaded:
             self.tree, value={**dict(self.tree.items()), "components": replace(section, value=dict(described))}
         )
         good = check_components(tree, self.target, self.catalog, Diagnostics(), pins_required=False)
-        found: dict[str, Component] = {}
+        components: dict[str, Component] = {}
         for name, node in described:
             kind = self.catalog.find_kind(str(node["kind"].value)) if "kind" in node else None
             if name in good:
-                found[name] = good[name]
+                components[name] = good[name]
             elif kind is not None:
-                found[name] = _with_error(name, kind, node, section.key_span(name))
-        return found
+                components[name] = _with_error(name, kind, node, section.key_span(name))
+        return components
 
     @cached_property
     def wired(self) -> Configuration | None:
@@ -104,6 +103,17 @@ class Loaded:
         return load_configuration(self.request, self.catalog, Diagnostics(), pins_required=False)
 
     @property
+    def wires(self) -> Iterator[tuple[str, str, Sequence[WireEnd]]]:
+        """The wired ports in the bindings: section, name and ends of each."""
+        for section in ("inputs", "outputs"):
+            ports = value_at(self.root, section)
+            for name, _ in ports.items() if ports is not None else ():
+                assert self.root is not None
+                ends = ends_of(self.root, section, name)
+                if ends is not None:
+                    yield section, name, ends
+
+    @property
     def period(self) -> Fraction | None:
         """The control period in seconds; None if it is not known yet."""
         model = self.parts.model
@@ -111,7 +121,7 @@ class Loaded:
         return stated or (model.step if model is not None else None)
 
     @cached_property
-    def hardware(self) -> Hardware:
+    def hardware(self) -> Assignments:
         """The assignments of the components' claims; without an application, those that follow from the ``.tcf``."""
         configuration, application = self.parts.configuration, self.parts.application
         if application is not None:
@@ -121,13 +131,13 @@ class Loaded:
         return allocate_hardware(configuration, self.period, Diagnostics()) or {}
 
     @cached_property
-    def wiring(self) -> Hardware:
+    def wiring(self) -> Assignments:
         """The hardware; while errors prevent it, the pins as the ``.tcf`` states them."""
         if self.hardware or self.wired is None:
             return self.hardware
         return as_written(component_claims(self.wired), self.wired.target)
 
-    def pin_options(self, signal: Signal) -> tuple[PinOption, ...]:
+    def pin_options(self, signal: ClaimSignal) -> tuple[PinOption, ...]:
         """The pins of the board for ``signal``; empty if there is no such signal."""
         if self.wired is None:
             return ()
@@ -136,7 +146,7 @@ class Loaded:
         return self._pin_options[signal]
 
     @cached_property
-    def pin_problems(self) -> tuple[tuple[Signal, str], ...]:
+    def pin_problems(self) -> tuple[tuple[ClaimSignal, str], ...]:
         """The errors of pins and peripherals: the signal that each is about, and the message."""
         configuration = self.wired
         if configuration is None or not configuration.target.has_pins:
@@ -155,25 +165,29 @@ class Loaded:
         return tuple(result)
 
     @cached_property
-    def _pin_options(self) -> dict[Signal, tuple[PinOption, ...]]:
+    def _pin_options(self) -> dict[ClaimSignal, tuple[PinOption, ...]]:
         return {}
 
     @cached_property
     def matches(self) -> Mapping[str, Match]:
-        """The probable component of each model port."""
-        return match_ports(self.parts.model, self.components) if self.parts.model is not None else {}
+        """The probable component of each model port that is not bound."""
+        if self.parts.model is None:
+            return {}
+        by_system = {port: (port,) for port in self.by_system}  # the component of such a port has the port's name
+        return match_ports(self.parts.model, self.components, {**by_system, **references_of(self.root)})
 
     @cached_property
     def bound(self) -> tuple[str, ...]:
         """The ports that the bindings name."""
-        sections = (self.root.get(section) for section in ("inputs", "outputs")) if self.root is not None else ()
+        sections = (value_at(self.root, section) for section in ("inputs", "outputs"))
         return tuple(name for section in sections if section is not None for name, _ in section.items())
 
     @cached_property
     def references(self) -> frozenset[str]:
         """The component ports at which wires end, as the bindings name them, and those that the system connects."""
         system = self.request.system
-        return _references(self.root) | {end.component for end in (system.ends if system is not None else ())}
+        ends = (reference for references in references_of(self.root).values() for reference in references)
+        return frozenset(ends) | {end.component for end in (system.ends if system is not None else ())}
 
     @cached_property
     def by_system(self) -> Mapping[str, str]:
@@ -182,10 +196,7 @@ class Loaded:
         if system is None or model is None or configuration is None:
             return {}
         ports = {port.name for port in (*model.inputs, *model.outputs)} - set(self.bound)
-        components = configuration.components
-        return {
-            end.name: end.topic for end in system.ends if end.name in ports and is_made_for(end, components[end.name])
-        }
+        return {end.name: end.topic for end in system.ends if end.name in ports & configuration.made}
 
     @cached_property
     def plant_references(self) -> frozenset[str]:
@@ -193,7 +204,7 @@ class Loaded:
         path = self.request.plant_bindings
         text = read_text(path, Diagnostics(), None, self.request.drafts) if path is not None else None
         root = parse_yaml(text, str(path), Diagnostics()) if text is not None else None
-        return _references(root if root is not None and root.is_mapping else None)
+        return frozenset(reference for references in references_of(root).values() for reference in references)
 
     @cached_property
     def places(self) -> Places:
@@ -217,12 +228,9 @@ class Loaded:
             yield request.plant
 
 
-def _references(root: YamlNode | None) -> frozenset[str]:
-    """The component ports that bindings name."""
-    sections = ((section, root.get(section)) for section in ("inputs", "outputs")) if root is not None else ()
-    ports = ((section, name) for section, node in sections if node is not None for name, _ in node.items())
-    ends = (ends_of(root, section, name) for section, name in ports if root is not None)
-    return frozenset(end.reference for found in ends for end in found or ())
+def value_at(tree: YamlNode | None, *path: str) -> YamlNode | None:
+    """The value at ``path`` of a file; None if it has none, or if the file cannot be read."""
+    return tree.get(*path) if tree is not None else None
 
 
 def tcf_path(request: Request) -> Path | None:
@@ -237,7 +245,8 @@ class Models:
         self._known: dict[Path, tuple[Watch, Model | None, Diagnostics]] = {}
 
     def read(self, path: Path, diagnostics: Diagnostics) -> Model | None:
-        """The model as :func:`epg.models.load_model` reads it.  Each call adds the same messages to ``diagnostics``."""
+        """The model as :func:`epg.generator.importers.load_model` reads it.  Each call adds the same messages to
+        ``diagnostics``."""
         known = self._known.pop(path, None)
         if known is None or known[0].changed():
             problems = Diagnostics()
@@ -284,7 +293,7 @@ def files_of_model(path: Path, model: Model | None) -> Iterator[Path]:
     yield path
     if model is not None:
         yield from model.files
-        yield from model.twins
+        yield from model.considered
         yield from (model.directory, *model.searched)
         return
     if path.exists():  # the user may add a missing file in a folder beside it

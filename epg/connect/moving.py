@@ -16,16 +16,17 @@ from dataclasses import asdict, field, replace
 from pathlib import Path
 from typing import Any
 
-from epg.check.configuration import Configuration
-from epg.check.middleware import first_middleware, offered
 from epg.connect.draft import RemoveValue, SetValue
-from epg.connect.loaded import Loaded, Models, load
-from epg.dataclass import dataclass
-from epg.diagnostics import Diagnostic, Diagnostics
+from epg.connect.loaded import Loaded, Models, load, value_at
+from epg.connect.pinout import lacking_pins
 from epg.edit.tcf import COMPONENTS, remove_value, set_value
-from epg.project import Request, load_configuration
-from epg.resolve.first_fit import Signal, first_fit, signals_of, usable_pin
-from epg.source import YamlNode
+from epg.generator.check.configuration import Configuration
+from epg.generator.check.middleware import first_middleware, offered
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostic, Diagnostics
+from epg.generator.project import Request, load_configuration
+from epg.generator.resolve.first_fit import ClaimSignal, first_fit, signals_of
+from epg.generator.source import YamlNode
 
 _SETTINGS = ("clocks", "control", "communication")
 """The sections whose settings are dropped if the new target does not have them."""
@@ -34,7 +35,7 @@ _ROUNDS = 50
 
 
 @dataclass(frozen=True)
-class Item:
+class MovedValue:
     """What happens to one value: ``what`` is "changed", "dropped", "asked" or "kept".
 
     ``before`` and ``after`` are its texts; ``reason`` is the message about the old value.
@@ -55,7 +56,7 @@ class TcfMove:
     """The changes of the ``.tcf`` so far: its new ``text``, and the operations that make it."""
 
     text: str
-    items: list[Item] = field(default_factory=list)
+    items: list[MovedValue] = field(default_factory=list)
     operation: list[SetValue | RemoveValue] = field(default_factory=list)
 
 
@@ -88,7 +89,7 @@ class _Plan:
             path = last.places.path(problem)
             hint = f": {problem.hint}" if problem.hint else ""
             self.move.items.append(
-                Item("asked", ".".join(path) or problem.span.file, reason=f"{problem.message}{hint}")
+                MovedValue("asked", ".".join(path) or problem.span.file, reason=f"{problem.message}{hint}")
             )
         self.keep()
         return self.move
@@ -97,7 +98,7 @@ class _Plan:
         before = self.stated(path)
         self.move.text = set_value(self.move.text, self.path.name, path, value)
         self.move.operation.append(SetValue(tuple(path), value))
-        self.move.items.append(Item("changed", ".".join(path), before, str(value), reason))
+        self.move.items.append(MovedValue("changed", ".".join(path), before, str(value), reason))
 
     def drop(self, path: Sequence[str], reason: str) -> bool:
         """Removes a value of the user's file.  Returns False if it is that of an extended file."""
@@ -106,12 +107,11 @@ class _Plan:
         before = self.stated(path)
         self.move.text = remove_value(self.move.text, self.path.name, path)
         self.move.operation.append(RemoveValue(tuple(path)))
-        self.move.items.append(Item("dropped", ".".join(path), before, "", reason))
+        self.move.items.append(MovedValue("dropped", ".".join(path), before, "", reason))
         return True
 
     def stated(self, path: Sequence[str]) -> str:
-        tree = self.loaded.tree
-        node = self.own.get(*path) or (tree.get(*path) if tree is not None else None)
+        node = self.own.get(*path) or value_at(self.loaded.tree, *path)
         return "" if node is None else _text(node)
 
     def now(self) -> Loaded:
@@ -132,7 +132,7 @@ class _Plan:
         if path == ("communication", "middleware"):
             self.change(path, first_middleware(target, now.catalog), problem.message)
         elif path == ("communication", "transport"):
-            middleware = now.tree.get("communication", "middleware") if now.tree is not None else None
+            middleware = value_at(now.tree, "communication", "middleware")
             name = str(middleware.value) if middleware is not None else first_middleware(target, now.catalog)
             transports = offered(target, now.catalog).get(name, ())
             if not transports:
@@ -149,45 +149,47 @@ class _Plan:
 
         If there are no pins for all of them, each component gets some for which there are.
         """
-        found = self.without_pins()
-        if found is None or not found.target.has_pins:
+        unwired = self.without_pins()
+        if unwired is None or not unwired.target.has_pins:
             return
-        written = signals_of(found)
-        unusable = {signal for signal, pin in written.items() if not pin or not usable_pin(found.target, pin)}
-        wrong = unusable | self.wrong_signals(found)
+        written = signals_of(unwired)
+        unusable = set(lacking_pins(unwired))
+        wrong = unusable | self.wrong_signals(unwired)
         tries = dict.fromkeys(map(frozenset, (unusable, wrong, written)))  # a search can take seconds
-        for wanted in tries if wrong else ():
-            pins = self.fitting(found, wanted)
+        if not wrong:
+            return
+        for wanted in tries:
+            pins = self.fitting(unwired, wanted)
             if pins and self.are_right(pins):
                 self.write_pins(pins, written)
                 return
         for name in dict.fromkeys(component for component, _ in sorted(wrong)):
-            configuration = self.without_pins() or found
+            configuration = self.without_pins() or unwired
             pins = self.fitting(configuration, {signal for signal in wrong if signal[0] == name})
-            self.write_pins(pins or {}, written)
+            self.write_pins(pins, written)
 
     def without_pins(self) -> Configuration | None:
         """The configuration with the changes so far, in which components may have no pins."""
         return load_configuration(self.now().request, self.loaded.catalog, Diagnostics(), pins_required=False)
 
-    def fitting(self, configuration: Configuration, wanted: Collection[Signal]) -> dict[Signal, str] | None:
+    def fitting(self, configuration: Configuration, wanted: Collection[ClaimSignal]) -> dict[ClaimSignal, str]:
         model = self.loaded.parts.model
         period = configuration.control.period or (model.step if model is not None else None)
-        return first_fit(configuration, period, wanted) if wanted else None
+        return (first_fit(configuration, period, wanted) if wanted else None) or {}
 
-    def write_pins(self, pins: Mapping[Signal, str], written: Mapping[Signal, str]) -> None:
+    def write_pins(self, pins: Mapping[ClaimSignal, str], written: Mapping[ClaimSignal, str]) -> None:
         for (component, pin), name in pins.items():
             if written[component, pin] != name:
                 self.change((COMPONENTS, component, "pins", pin), name, "a free pin that fits")
 
-    def wrong_signals(self, configuration: Configuration) -> set[Signal]:
+    def wrong_signals(self, configuration: Configuration) -> set[ClaimSignal]:
         """The signals of the components with errors about their pins."""
         now = self.now()
         about = [now.places.path(problem) for problem in self.new_errors(now)]
         names = {path[1] for path in about if path[:1] == [COMPONENTS] and len(path) > 1}
         return {signal for signal in signals_of(configuration) if signal[0] in names}
 
-    def are_right(self, pins: Mapping[Signal, str]) -> bool:
+    def are_right(self, pins: Mapping[ClaimSignal, str]) -> bool:
         """True if fewer errors about components are left with ``pins``."""
         text = self.move.text
         before = len(self.new_errors(self.now()))
@@ -208,7 +210,7 @@ class _Plan:
                 path = f"{key}.{name}".rstrip(".")
                 if path not in touched:
                     kind = child.get("kind") if key == COMPONENTS else None
-                    self.move.items.append(Item("kept", path, _text(child if kind is None else kind)))
+                    self.move.items.append(MovedValue("kept", path, _text(child if kind is None else kind)))
 
 
 def _errors(loaded: Loaded) -> list[Diagnostic]:

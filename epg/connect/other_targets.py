@@ -8,10 +8,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from epg.connect.projects import Job
-from epg.diagnostics import Diagnostic, Diagnostics
-from epg.documents.tcf import load_tcf_chain
-from epg.documents.text_file import NO_DRAFTS, Drafts
-from epg.project import Request, load_parts
+from epg.generator.diagnostics import Diagnostic, Diagnostics
+from epg.generator.documents.tcf import load_tcf_chain
+from epg.generator.documents.text_file import NO_DRAFTS, Drafts
+from epg.generator.project import Request, load_parts
 
 
 def readers(path: Path, jobs: Sequence[Job]) -> list[Job]:
@@ -28,14 +28,14 @@ def _files(request: Request) -> Iterator[Path]:
 
 def new_errors(texts: Mapping[Path, str], jobs: Sequence[Job]) -> dict[str, list[Diagnostic]]:
     """The errors that each of ``jobs`` gets if files have ``texts``, by the target's name; without those it has now."""
-    found = {}
+    errors_by_target = {}
     for job in jobs:
         drafts = {file: text for file in _files(job.request) for path, text in texts.items() if _same(file, path)}
         if drafts:
             now = {(each.id, each.message) for each in _errors(job.request, NO_DRAFTS)}
             errors = [each for each in _errors(job.request, drafts) if (each.id, each.message) not in now]
-            found[job.request.name] = errors
-    return {name: errors for name, errors in found.items() if errors}
+            errors_by_target[job.request.name] = errors
+    return {name: errors for name, errors in errors_by_target.items() if errors}
 
 
 def _same(file: Path, path: Path) -> bool:

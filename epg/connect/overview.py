@@ -8,21 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
-from epg.catalog.catalog import Catalog
 from epg.connect.files import Watch
+from epg.connect.json_data import Data
 from epg.connect.loaded import Loaded, Models, files_of_model, load
 from epg.connect.view import diagnostic_view
-from epg.diagnostics import Diagnostic, Diagnostics
-from epg.quantity import show
+from epg.generator.catalog.catalog import Catalog
+from epg.generator.diagnostics import Diagnostic, Diagnostics
+from epg.generator.quantity import show
 from epg.system.check_system import CheckedSystem, check_whole
 from epg.system.load_system import parse_system
 from epg.system.loader import Loader
 from epg.system.picture import draw_system
 from epg.system.system import Connection, End, System, SystemPlant
 
-Data = dict[str, Any]
 NO_CHANGES = {
     "changed": False,
     "can_undo": False,
@@ -100,14 +99,14 @@ class Overview:
 
     def _load_targets(self, catalog: Catalog) -> dict[str, Loaded]:
         assert self.system is not None
-        found = {
+        targets = {
             name: load(self.system.request(target, self._user_roots), self._models, catalog)
             for name, target in self.system.targets.items()
         }
         if not self._problems.has_errors:  # else a connection that the file has wrong could be missing in its targets
-            for loaded in found.values():
+            for loaded in targets.values():
                 self._problems.add_all(loaded.diagnostics)
-        return found
+        return targets
 
     def _files_of(self, plant: SystemPlant, loader: Loader) -> list[Path]:
         return list(files_of_model(plant.model, loader.model(plant.model, Diagnostics())))

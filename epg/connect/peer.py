@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Finds the user at the other end of a connection on this computer, on Linux.
 
-/proc/net/tcp lists both ends of such a connection, each with the user who owns it (proc_pid_net(5)).
+/proc/net/tcp lists both ends of such a connection, each with the user who owns it (proc_pid_net(5)).  Every user of the
+computer can connect to a port of 127.0.0.1.  A Unix socket would have permissions, but a browser cannot open one.  An
+owner who is not known is not refused, because then the keys of ``keys.py`` still protect the page.
 """
 
 from __future__ import annotations
@@ -13,7 +15,7 @@ from pathlib import Path
 
 TABLE = Path("/proc/net/tcp")
 _OVERFLOW = 65534
-"""The number of every user from outside of this program's user namespace (user_namespaces(7))."""
+"""The number of every user from outside of this program's user namespace (user_namespaces(7)); elsewhere, of nobody."""
 
 
 def is_another_user(peer: tuple[str, int], here: tuple[str, int]) -> bool:
@@ -23,8 +25,9 @@ def is_another_user(peer: tuple[str, int], here: tuple[str, int]) -> bool:
     program with sudo does not count either.
     """
     user = owner(peer, here)
-    own = {0, _OVERFLOW, os.geteuid(), _sudo_user()} if user is not None else set()
-    return user is not None and user not in own
+    if user is None or (user == _OVERFLOW and not _sees_all_users()):
+        return False
+    return user not in {0, os.geteuid(), _sudo_user()}
 
 
 def owner(peer: tuple[str, int], here: tuple[str, int], table: Path = TABLE) -> int | None:
@@ -40,6 +43,14 @@ def owner(peer: tuple[str, int], here: tuple[str, int], table: Path = TABLE) -> 
 def _entry(address: str, port: int) -> str:
     """An end as the kernel writes it: the address as a number in this computer's byte order, then the port."""
     return f"{int.from_bytes(socket.inet_aton(address), sys.byteorder):08X}:{port:04X}"
+
+
+def _sees_all_users(table: Path = Path("/proc/self/uid_map")) -> bool:
+    """False in a user namespace, from where users outside of it are all one number."""
+    try:
+        return table.read_text(encoding="ascii").split() == ["0", "0", "4294967295"]
+    except (OSError, ValueError):
+        return True
 
 
 def _sudo_user() -> int | None:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from epg.connect.loaded import Loaded
 from epg.connect.pinout import draw_pinout
 from epg.connect.view import pictures
-from epg.emit.application import Emitter
+from epg.generator.emit.application import Emitter
 from epg.graph.application import draw_application
 from epg.graph.schedule import draw_schedule
 

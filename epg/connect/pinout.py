@@ -2,26 +2,24 @@
 """The pins of a target: the board's drawing, the pins that a signal can have, and changes of pins.
 
 The drawing, the list of pins and the answer to a change are made of the same options
-(:func:`epg.resolve.pin_options.pin_options`), so they cannot disagree.
+(:func:`epg.generator.resolve.pin_options.pin_options`), so they cannot disagree.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from typing import Any
 
-from epg.catalog.layout import Contact
-from epg.check.configuration import Configuration
 from epg.connect.body import Refused
 from epg.connect.draft import SetValue
+from epg.connect.json_data import Data
 from epg.connect.loaded import Loaded
-from epg.documents.items import pin_list
+from epg.generator.catalog.board_layout import Contact
+from epg.generator.check.configuration import Configuration
+from epg.generator.documents.items import pin_list
+from epg.generator.resolve.first_fit import ClaimSignal, first_fit, signals_of, usable_pin
+from epg.generator.resolve.pin_options import PinOption
 from epg.graph.terminals import printed_names
-from epg.graph.wiring import Choice, draw_wiring
-from epg.resolve.first_fit import Signal, first_fit, signals_of, usable_pin
-from epg.resolve.pin_options import PinOption
-
-Data = dict[str, Any]
+from epg.graph.wiring import PinChoice, draw_wiring
 
 
 def signals_view(loaded: Loaded) -> list[Data]:
@@ -46,7 +44,7 @@ def problems_view(loaded: Loaded) -> list[Data]:
     ]
 
 
-def options_view(loaded: Loaded, signal: Signal) -> list[Data]:
+def options_view(loaded: Loaded, signal: ClaimSignal) -> list[Data]:
     """The pins of the board for ``signal``.  Raises Refused if there is no such signal."""
     configuration, options = _asked(loaded, signal)
     contacts = _contacts(configuration)
@@ -66,7 +64,7 @@ def options_view(loaded: Loaded, signal: Signal) -> list[Data]:
     ]
 
 
-def draw_pinout(loaded: Loaded, title: str, signal: Signal | None = None, *, for_page: bool = False) -> str | None:
+def draw_pinout(loaded: Loaded, title: str, signal: ClaimSignal | None = None, *, for_page: bool = False) -> str | None:
     """The board with its wires, as the files state them, also with conflicts; None if the target has no pins.
 
     With ``signal``, the contacts show if they can have it.
@@ -75,13 +73,13 @@ def draw_pinout(loaded: Loaded, title: str, signal: Signal | None = None, *, for
     if configuration is None or configuration.target.board.layout is None:
         return None
     wrong = [signal for signal, _ in loaded.pin_problems]
-    choice = Choice(signal, _asked(loaded, signal)[1]) if signal is not None else None
+    choice = PinChoice(signal, _asked(loaded, signal)[1]) if signal is not None else None
     return draw_wiring(
         configuration.target, configuration.components, loaded.wiring, title, choice, wrong, for_page=for_page
     )
 
 
-def chosen_pin(loaded: Loaded, signal: Signal, pin: str) -> tuple[SetValue, ...]:
+def chosen_pin(loaded: Loaded, signal: ClaimSignal, pin: str) -> tuple[SetValue, ...]:
     """The changes that give ``pin`` to ``signal``.  Raises Refused with the pins that fit, if it cannot have it."""
     configuration, options = _asked(loaded, signal)
     board = configuration.target.board
@@ -97,7 +95,7 @@ def chosen_pin(loaded: Loaded, signal: Signal, pin: str) -> tuple[SetValue, ...]
     raise Refused(f"{pin} cannot be {' '.join(signal)}: {reason}", hint, 409)
 
 
-def first_pins(loaded: Loaded, wanted: Collection[Signal] | None) -> tuple[SetValue, ...]:
+def first_pins(loaded: Loaded, wanted: Collection[ClaimSignal] | None) -> tuple[SetValue, ...]:
     """The changes that give the first pins that fit to the signals in ``wanted``, or to all that lack one.
 
     Raises Refused if there are no such pins.
@@ -109,20 +107,25 @@ def first_pins(loaded: Loaded, wanted: Collection[Signal] | None) -> tuple[SetVa
     for signal in wanted or ():
         if signal not in written:
             raise Refused(f"there is no signal '{' '.join(signal)}'", status=404)
-    lacking = [signal for signal, pin in written.items() if not pin or not usable_pin(configuration.target, pin)]
-    asked = lacking if wanted is None else wanted
-    found = first_fit(configuration, loaded.period, asked)
-    if found is None:
+    asked = lacking_pins(configuration) if wanted is None else wanted
+    pins = first_fit(configuration, loaded.period, asked)
+    if pins is None:
         names = ", ".join(" ".join(signal) for signal in asked)
         raise Refused(f"no free pins fit {names}", "move or remove another component first", 409)
-    return _set({signal: pin for signal, pin in found.items() if _title(configuration, written[signal]) != pin})
+    return _set({signal: pin for signal, pin in pins.items() if _title(configuration, written[signal]) != pin})
 
 
-def _set(pins: Mapping[Signal, str]) -> tuple[SetValue, ...]:
+def lacking_pins(configuration: Configuration) -> list[ClaimSignal]:
+    """The signals without a pin, and those whose pin the board does not have or cannot use."""
+    written = signals_of(configuration)
+    return [signal for signal, pin in written.items() if not pin or not usable_pin(configuration.target, pin)]
+
+
+def _set(pins: Mapping[ClaimSignal, str]) -> tuple[SetValue, ...]:
     return tuple(SetValue(("components", component, "pins", name), pin) for (component, name), pin in pins.items())
 
 
-def _asked(loaded: Loaded, signal: Signal) -> tuple[Configuration, Sequence[PinOption]]:
+def _asked(loaded: Loaded, signal: ClaimSignal) -> tuple[Configuration, Sequence[PinOption]]:
     configuration = loaded.wired
     options = loaded.pin_options(signal)
     if configuration is None or not options:

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from epg.diagnostics import Diagnostic
-from epg.documents.tcf import TcfFile
-from epg.models.model import Model
-from epg.source import Span, YamlNode
+from epg.generator.diagnostics import Diagnostic
+from epg.generator.documents.tcf import TcfFile
+from epg.generator.models.model import Model
+from epg.generator.source import Span, YamlNode
 
 _SECTIONS = ("inputs", "outputs")
 MISSING = "missing-key"

@@ -8,17 +8,17 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
 from epg.connect.build_folders import build_folders
 from epg.connect.literal_calls import FILE, Call, LiteralCalls, Unknown, Word, not_literal
 from epg.connect.recorded_calls import recorded_calls
-from epg.dataclass import dataclass
-from epg.diagnostics import Diagnostics
-from epg.project import Request
-from epg.source import Span
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.project import Request
+from epg.generator.source import Span
 from epg.system import SYSTEM_FILES
 from epg.system.load_system import parse_system
 
@@ -73,11 +73,7 @@ def find_jobs(
         requests, unknown = ({**requests, **known}, []) if known else (requests, unknown)
     executables = {**executables, **records[build.path].executables}
     by_west = read.uses_zephyr
-    configure = "west build --cmake-only" if by_west else "cmake -S . -B build"
-    hint = f"configure with '{configure}', which runs the project's CMake files, then start 'epg connect' again"
-    for place in unknown:
-        report = diagnostics.warning if requests else diagnostics.error
-        report("cmake-not-understood", place.span, place.message, hint=place.hint or hint)
+    _report(unknown, diagnostics.warning if requests else diagnostics.error, by_west)
     return [
         Job(
             request,
@@ -90,6 +86,13 @@ def find_jobs(
         )
         for name, request in requests.items()
     ]
+
+
+def _report(unknown: Iterable[Unknown], report: Callable[..., None], by_west: bool) -> None:
+    configure = "west build --cmake-only" if by_west else "cmake -S . -B build"
+    hint = f"configure with '{configure}', which runs the project's CMake files, then start 'epg connect' again"
+    for place in unknown:
+        report("cmake-not-understood", place.span, place.message, hint=place.hint or hint)
 
 
 def jobs_of_model(model: Path) -> list[Job]:
@@ -135,13 +138,13 @@ def system_jobs(path: Path, folder: Path, user_roots: Sequence[Path] = ()) -> li
 
 def _system_calls(folder: Path) -> dict[Path, Call]:
     """The calls of epg_add_system() in ``folder`` and below that make a simulation, by the file of the system."""
-    found: dict[Path, Call] = {}
+    calls: dict[Path, Call] = {}
     for call in LiteralCalls(_top(folder)).calls:
         if call.name == "epg_add_system" and call.folder.is_relative_to(folder):
             values, _ = _keywords(call.words[1:])
             if "SYSTEM" in values and "TARGETS" not in [word.text for word in call.words]:
-                found.setdefault(_path(call.folder, values["SYSTEM"]), call)
-    return found
+                calls.setdefault(_path(call.folder, values["SYSTEM"]), call)
+    return calls
 
 
 def report_no_target(folder: Path, diagnostics: Diagnostics) -> None:
@@ -208,25 +211,29 @@ def _request(call: Call, unknown: list[Unknown]) -> Request | None:
         lacking = f"{missing[0]} is missing" if call.words else "its name is missing"
         unknown.append(Unknown(call.span, f"this epg_add_target() is not complete: {lacking}"))
         return None
-    name = call.words[0]
-    here = call.folder
-    written = [(word.text or "", word.span) for word in settings]
-    written += [
-        (f"{key.lower()}={values[key].text}", values[key].span) for key in ("NODE", "NAMESPACE") if key in values
-    ]
+    paths = {keyword: _path(call.folder, word) for keyword, word in values.items()}
     return Request(
-        name=name.text or "",
+        name=call.words[0].text or "",
         tcf=values["TCF"].text or "",
-        model=_path(here, values["MODEL"]),
-        bindings=_path(here, values["BINDINGS"]),
-        plant=_path(here, values["PLANT"]) if "PLANT" in values else None,
-        plant_bindings=_path(here, values["PLANT_BINDINGS"]) if "PLANT_BINDINGS" in values else None,
-        ioc=_path(here, values["IOC"]) if "IOC" in values else None,
-        settings=written,
+        model=paths["MODEL"],
+        bindings=paths["BINDINGS"],
+        plant=paths.get("PLANT"),
+        plant_bindings=paths.get("PLANT_BINDINGS"),
+        ioc=paths.get("IOC"),
+        settings=_settings(values, settings),
         user_roots=_user_roots(call),
-        caller=name.span,
-        beside=here,
+        caller=call.words[0].span,
+        beside=call.folder,
     )
+
+
+def _settings(values: Mapping[str, Word], settings: Iterable[Word]) -> list[tuple[str, Span]]:
+    """The settings of a call, as ``--set`` takes them: those of SET, and the names of node and namespace."""
+    named = [(key, values[key]) for key in ("NODE", "NAMESPACE") if key in values]
+    return [
+        *((word.text or "", word.span) for word in settings),
+        *((f"{key.lower()}={word.text}", word.span) for key, word in named),
+    ]
 
 
 def _of_system(call: Call, path: Path, ioc: Word | None, unknown: list[Unknown]) -> Request | None:

@@ -11,10 +11,10 @@ from dataclasses import field
 from pathlib import Path
 
 from epg.connect.build_folders import BuildFolder
-from epg.dataclass import dataclass
-from epg.diagnostics import Diagnostics
-from epg.documents.text_file import is_file, read_text
-from epg.project import Request, request_of_options
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.text_file import is_file, read_text
+from epg.generator.project import Request, request_of_options
 
 RECORD = "CMakeFiles/epg/calls.txt"
 

@@ -8,20 +8,20 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from epg.check.configuration import Configuration
 from epg.connect.activity import Activity
 from epg.connect.body import Refused
+from epg.connect.build.build_run import Build, configuration_of
 from epg.connect.build.consent import Question, question_about, question_about_program
-from epg.connect.build.run import Build, configuration_of
 from epg.connect.places import Places
 from epg.connect.projects import Job
-from epg.connect.run.compare import ComparisonRun, Driven, comparison_commands
 from epg.connect.run.find_simulation import Simulation, simulations_of
 from epg.connect.run.flash import Boards, FlashRun, boards_for
+from epg.connect.run.live_comparison import ComparisonRun, Driven, comparison_commands
 from epg.connect.run.program import ProgramRun, command_of, port_of
 from epg.connect.run.simulate import SimulationRun, commands_of
-from epg.resolve.application import Application
-from epg.source import Span
+from epg.generator.check.configuration import Configuration
+from epg.generator.resolve.application import Application
+from epg.generator.source import Span
 
 START = 10.0
 """Seconds that a program gets to make the terminal of its console."""
@@ -178,12 +178,12 @@ class Runs:
         """Writes the product to the board ``id``, which :meth:`find_boards` has found and the user has confirmed."""
         self.check_idle()
         boards = self._boards or Boards()
-        found = [board for board in boards.found if board.id == id]
-        if not found:
+        chosen = [board for board in boards.found if board.id == id]
+        if not chosen:
             raise Refused(f"there is no board '{id}'", "look for boards again", 409)
         self._boards = None
         self._flash = FlashRun(self._changed)
-        self._flash.start(boards, found[0], replace=replace)
+        self._flash.start(boards, chosen[0], replace=replace)
 
     def download(self, path: str) -> bytes:
         """The contents of a product of the last build.  Raises Refused for other files."""
@@ -193,10 +193,15 @@ class Runs:
             raise Refused(f"cannot read {path}: {error.strerror}", "generate again", 404) from None
 
     def _product(self, path: str) -> dict[str, Any]:
-        found = [each for each in self._build.state()["products"] if each["path"] == path]
-        if not found:
+        chosen = [each for each in self._build.state()["products"] if each["path"] == path]
+        if not chosen:
             raise Refused(f"the last build has not made '{path}'", "generate again", 404)
-        return dict(found[0])
+        return dict(chosen[0])
+
+    @property
+    def ends_program(self) -> bool:
+        """True if :meth:`cancel` ends the program that runs."""
+        return self._program.is_running and not self._comparison.is_running
 
     def cancel(self) -> None:
         """Cancels the running activity; of a program and its comparison, the comparison."""
@@ -258,7 +263,7 @@ def find_simulation(job: Job, name: str) -> Simulation:
     simulations = simulations_of(job)
     if not simulations.found:
         raise Refused(simulations.problem, simulations.hint, 409)
-    found = [each for each in simulations.found if name in ("", each.name)]
-    if not found:
+    chosen = [each for each in simulations.found if name in ("", each.name)]
+    if not chosen:
         raise Refused(f"there is no simulation '{name}'", status=404)
-    return found[0]
+    return chosen[0]

@@ -18,6 +18,7 @@ import contextlib
 import hashlib
 import itertools
 import json
+import shutil
 import sys
 import threading
 import time
@@ -28,7 +29,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, unquote, urlsplit
 
-from epg.connect.body import number, text
+from epg.connect.body import boolean, number, text
 from epg.connect.keys import Keys
 from epg.connect.peer import is_another_user
 from epg.connect.session import Refused, Session
@@ -47,7 +48,7 @@ _PICTURES_STYLES = " ".join(
 )
 """The hashes of the pictures' style sheets.  The policy also holds for a picture that is opened alone."""
 HEADERS = {
-    "Content-Security-Policy": "default-src 'none'; script-src 'self'; "
+    "Content-Security-Policy": "default-src 'none'; script-src 'self'; worker-src 'self'; "
     f"style-src 'self' {_PICTURES_STYLES}; img-src 'self' blob:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
     "Cache-Control": "no-store",
@@ -248,27 +249,29 @@ class _Handler(BaseHTTPRequestHandler):
         elif path == "api/move":
             self._json(owner.session.move(query.get("configuration", "")))
         elif path == "api/live/events":
-            self._events()
+            self._events(query.get("page", ""))
         elif path == "api/live/capture":
             self._json(owner.session.live.recorded())
         elif path == "api/live/comparison":
             self._json(owner.session.runs.compared)
         elif path == "api/live/save":
-            data = owner.session.live.save(query.get("what", ""), query.get("as", ""))
-            self._send(200, "application/octet-stream", data)
+            with owner.session.live.save(query.get("what", ""), query.get("as", "")) as file:
+                self._send_file(file)
         elif path == "api/source":
             self._json(owner.session.source(query.get("file", ""), _integer(query, "line", 1)))
         elif path == "api/pins":
             self._json(owner.session.pin_options(query.get("component", ""), query.get("signal", "")))
-        elif path == "picture/pinout.svg":
-            svg = owner.session.pinout(query.get("component", ""), query.get("signal", ""))
-            self._send(200, TYPES[".svg"], svg.encode())
         elif path.startswith("picture/") and path.endswith(".svg"):
             name = path.removeprefix("picture/").removesuffix(".svg")
-            svg = owner.session.picture(name, query.get("configuration", ""))
-            self._send(200, TYPES[".svg"], svg.encode())
+            self._send(200, TYPES[".svg"], self._picture(name, query).encode())
         else:
             raise Refused("there is no such address", status=404)
+
+    def _picture(self, name: str, query: Mapping[str, str]) -> str:
+        session = self.server.owner.session
+        if name == "pinout":
+            return session.pinout(query.get("component", ""), query.get("signal", ""))
+        return session.picture(name, query.get("configuration", ""))
 
     def _post(self, path: str, query: Mapping[str, str]) -> None:
         if path != "exchange":
@@ -278,6 +281,10 @@ class _Handler(BaseHTTPRequestHandler):
         body = self._body()
         if path == "exchange":
             self._json({"secret": self.server.owner.exchange(text(body, "token"))})
+        elif path == "api/live/respond":
+            live = self.server.owner.session.live
+            live.respond(text(body, "page"), int(number(body, "number")))
+            self._send(204, "application/json", b"")  # Firefox reads the body of an answer in the page's thread
         elif path.startswith("api/live/"):
             self._json(self._live(path.removeprefix("api/live/"), body))
         else:
@@ -287,16 +294,19 @@ class _Handler(BaseHTTPRequestHandler):
         """Actions on a running target.  They wait neither for the session's actions nor for each other."""
         session = self.server.owner.session
         live = session.live
-        if action == "respond":
-            live.respond(text(body, "page"), int(number(body, "number")))
-        elif action == "stop":
+        if action == "stop":
             live.stop()
         elif action == "move":
-            live.move(text(body, "actuator"), number(body, "duty"))
+            newest = int(number(body, "number", 0))
+            live.move(text(body, "page"), text(body, "actuator"), number(body, "duty"), newest)
         elif action == "enable":
-            live.enable(text(body, "page"))
+            live.enable(text(body, "page"), text(body, "after", ""))
         elif action == "command":
-            return {"answer": live.command(text(body, "line"))}
+            agreed = boolean(body, "unattended")
+            line = text({"line": text(body, "line").strip()}, "line")
+            return {"answer": live.command(text(body, "page", ""), line, text(body, "after", ""), unattended=agreed)}
+        elif action == "look":
+            live.look()
         elif action == "durations":
             return {"durations": live.durations()}
         elif action == "connect":
@@ -307,9 +317,9 @@ class _Handler(BaseHTTPRequestHandler):
             raise Refused(f"there is no action '{action}'", status=404)
         return {}
 
-    def _events(self) -> None:
+    def _events(self, page: str) -> None:
         """Sends the events of a running target, one JSON object per line, until the connection with it ends."""
-        events = self.server.owner.session.live.events()
+        events = self.server.owner.session.live.events(page)
         first = next(events)
         self.close_connection = True
         self.send_response(200)
@@ -345,15 +355,25 @@ class _Handler(BaseHTTPRequestHandler):
         self._send(200, "application/json", json.dumps(data).encode())
 
     def _send(self, status: int, kind: str, data: bytes) -> None:
+        self._send_head(status, kind, len(data))
+        self.wfile.write(data)
+
+    def _send_file(self, path: Path) -> None:
+        """Sends a file that can be large."""
+        with path.open("rb") as file:
+            self._send_head(200, "application/octet-stream", path.stat().st_size)
+            shutil.copyfileobj(file, self.wfile)
+
+    def _send_head(self, status: int, kind: str, size: int) -> None:
         self.send_response(status)
-        self.send_header("Content-Type", kind)
-        self.send_header("Content-Length", str(len(data)))
+        if status != 204:
+            self.send_header("Content-Type", kind)
+            self.send_header("Content-Length", str(size))
         for name, value in HEADERS.items():
             self.send_header(name, value)
         if self.close_connection:
             self.send_header("Connection", "close")
         self.end_headers()
-        self.wfile.write(data)
 
 
 def _integer(query: Mapping[str, str], key: str, default: int) -> int:

@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import Any
 
 import epg
-from epg.check.communication import CONSOLE
 from epg.connect.body import Body, Refused, boolean, number, text
 from epg.connect.build.plan import make_plan
 from epg.connect.configurations import Configurations
@@ -26,6 +25,7 @@ from epg.connect.editor import Editor
 from epg.connect.edits import EDITS
 from epg.connect.excerpt import excerpt
 from epg.connect.files import Unsavable
+from epg.connect.json_data import State
 from epg.connect.other_targets import new_errors, readers
 from epg.connect.overview import Overview
 from epg.connect.pictures import draw
@@ -37,16 +37,15 @@ from epg.connect.runs import Runs, find_simulation
 from epg.connect.start import Start
 from epg.connect.targets import Targets
 from epg.connect.view import diagnostic_view, proposals_of
-from epg.diagnostics import Diagnostics
 from epg.edit.bindings import CannotEdit
-from epg.source import Span
+from epg.generator.check.communication import CONSOLE
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.source import Span
 
-__all__ = ["Refused", "Session", "State"]
+__all__ = ["Refused", "Session"]
 
 LOOK = 0.5
 """Seconds between two looks at the files while a caller waits for a change."""
-
-State = dict[str, Any]
 
 
 class Session:
@@ -100,7 +99,7 @@ class Session:
         }
         self._unlocked: dict[str, Callable[[Body], None]] = {
             "create": self._create,
-            "cancel": lambda body: self.runs.cancel(),
+            "cancel": self._cancel,
         }
         self._shown: State = {}
         self._readers: tuple[Editor, list[str]] | None = None
@@ -213,11 +212,17 @@ class Session:
             return self._ask("", anyway=anyway)
 
     def go_live(self, body: Body) -> None:
-        """Connects with the target behind the port "path".  The hash of the last build tells whether it is this one."""
+        """Connects with the target behind the port "path".  The hash of the last build tells whether it is this one.
+
+        "key" is the key of a console by UDP, if the user has typed it.
+        """
         editor = self._editor
         expected = built_hash(editor.job) if editor is not None else ""
         roots = editor.job.request.roots if editor is not None else ()
-        self.live.connect(Path(text(body, "path")), expected, int(number(body, "baud", 115200)), roots)
+        path, key = Path(text(body, "path")), text(body, "key", "")
+        if key:
+            self.live.give_key(path, key)
+        self.live.connect(path, expected, int(number(body, "baud", 115200)), roots)
 
     def run_live(self, program: Path) -> None:
         """Runs ``program`` of the open target in real time, and connects with it.  It is not enabled.  Raises Refused.
@@ -384,6 +389,15 @@ class Session:
     def _run(self, body: Body) -> None:
         self.runs.run_program(text(body, "path"), text(body, "run", ""), console=self.without_console is None)
 
+    def _cancel(self, body: Body) -> None:
+        """Cancels the running activity.
+
+        The connection with a program ends first, so that the page does not report a lost target.
+        """
+        if self.runs.port and self.runs.ends_program:
+            self.live.leave(Path(self.runs.port))
+        self.runs.cancel()
+
     def _flash(self, body: Body) -> None:
         """Without "board": looks for boards.  With it: writes the last product to this board."""
         board = text(body, "board", "")
@@ -506,11 +520,11 @@ class Session:
         return self._simulations[1]
 
     def _find_simulations(self, job: Job) -> None:
-        found = simulations_of(job)
-        listed = [{"name": each.name, "scenario": str(each.scenario)} for each in found.found]
+        simulations = simulations_of(job)
+        listed = [{"name": each.name, "scenario": str(each.scenario)} for each in simulations.found]
         with self._changed:
             if self._editor is not None and self._editor.job is job:
-                self._simulations = (job, {"found": listed, "problem": found.problem, "hint": found.hint})
+                self._simulations = (job, {"found": listed, "problem": simulations.problem, "hint": simulations.hint})
                 self._publish()
 
     def _bump(self) -> None:

@@ -6,13 +6,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from epg.catalog.catalog import Catalog
 from epg.connect.creation import proposal
 from epg.connect.files import Watch
 from epg.connect.loaded import files_of_model
 from epg.connect.view import diagnostic_view, model_view
-from epg.diagnostics import Diagnostics
-from epg.models import load_model
+from epg.generator.catalog.catalog import Catalog
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.importers import load_model
 
 
 class Start:

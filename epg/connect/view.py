@@ -10,25 +10,23 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from epg.catalog.kind import KindPort
-from epg.check.configuration import Component
-from epg.check.names import absolute_topic
-from epg.connect.fitting import fits
+from epg.connect.json_data import Data
 from epg.connect.loaded import Loaded
 from epg.connect.places import Places
-from epg.diagnostics import Diagnostic
-from epg.edit.bindings import End, ends_of
-from epg.emit.hardware import hardware_rows
+from epg.edit.bindings import WireEnd
+from epg.generator.catalog.kind import KindPort
+from epg.generator.check.configuration import Component
+from epg.generator.check.names import absolute_topic
+from epg.generator.diagnostics import Diagnostic
+from epg.generator.emit.hardware import hardware_rows
+from epg.generator.models.model import Model, Port
+from epg.generator.quantity import UNITS, normal_unit
+from epg.generator.resolve.application import ConversionStep
+from epg.generator.resolve.claims import TICK
+from epg.generator.resolve.fitting import component_steps, fits
+from epg.generator.resolve.matching import Match
 from epg.graph.application import conversion
 from epg.graph.terminals import wire_texts
-from epg.models.model import Model, Port
-from epg.quantity import UNITS, normal_unit
-from epg.resolve.application import Step
-from epg.resolve.claims import TICK
-from epg.resolve.matching import Match
-from epg.resolve.wires import component_steps
-
-Data = dict[str, Any]
 
 
 def view_of(loaded: Loaded) -> Data:
@@ -50,17 +48,8 @@ def view_of(loaded: Loaded) -> Data:
 
 
 def proposals_of(loaded: Loaded) -> dict[str, str]:
-    """The proposed reference of each port that has no wire.  An output gets no terminal that has a wire already."""
-    wires = _wires(loaded)
-    taken = {end["reference"] for ends in wires.values() for end in ends}
-    return {
-        name: match.proposal
-        for name, match in loaded.matches.items()
-        if name not in wires
-        and name not in loaded.by_system
-        and match.proposal is not None
-        and (match.port.direction == "input" or match.proposal not in taken)
-    }
+    """The proposed reference of each port that has no wire."""
+    return {name: match.proposal for name, match in loaded.matches.items() if match.proposal is not None}
 
 
 def pictures(loaded: Loaded) -> dict[str, bool]:
@@ -126,28 +115,23 @@ def _component(component: Component, loaded: Loaded, claims: dict[str, Any]) -> 
 
 
 def _wires(loaded: Loaded) -> dict[str, list[Data]]:
-    wires: dict[str, list[Data]] = {}
-    for section, direction in (("inputs", "source"), ("outputs", "sink")):
-        node = loaded.root.get(section) if loaded.root is not None else None
-        for name, _ in node.items() if node is not None else ():
-            assert loaded.root is not None
-            ends = ends_of(loaded.root, section, name)
-            if ends is not None:
-                wires[name] = [_wire(end, name, direction, loaded) for end in ends]
-    return wires
+    directions = {"inputs": "source", "outputs": "sink"}
+    return {
+        name: [_wire(end, name, directions[section], loaded) for end in ends] for section, name, ends in loaded.wires
+    }
 
 
-def _wire(end: End, name: str, direction: str, loaded: Loaded) -> Data:
+def _wire(end: WireEnd, name: str, direction: str, loaded: Loaded) -> Data:
     """One end of a wire: its conversion in the bindings, and in ``from_tcf`` the conversion of its component.
 
     The units are those on both sides of the conversion in the bindings; empty if they are not known.
     """
-    found = _end(end.reference, direction, loaded.components)
+    end_of_wire = _end(end.reference, direction, loaded.components)
     own = _said(end)
     given = ""
     unit = wanted = ""
-    if found is not None:
-        component, port = found
+    if end_of_wire is not None:
+        component, port = end_of_wire
         steps, unit = component_steps(component, port)
         given = " ".join(part for part in (_units(steps), conversion(steps)) if part)
         model = loaded.parts.model
@@ -160,10 +144,11 @@ def _wire(end: End, name: str, direction: str, loaded: Loaded) -> Data:
 
 
 def _fitting(match: Match, loaded: Loaded) -> list[str]:
-    """The candidates that agree with the port in type and unit, too."""
+    """The candidates that agree with the port in type and unit, too: first the free ones, the best of them first."""
     direction = "source" if match.port.direction == "input" else "sink"
     ends = {reference: _end(reference, direction, loaded.components) for reference in match.candidates}
-    return [reference for reference, end in ends.items() if end is not None and fits(match.port, *end)]
+    used = (name for name, end in ends.items() if end is not None and fits(match.port, *end))
+    return list(dict.fromkeys((*match.fitting, *used)))
 
 
 def _end(reference: str, direction: str, components: Mapping[str, Component]) -> tuple[Component, KindPort] | None:
@@ -177,7 +162,7 @@ def _end(reference: str, direction: str, components: Mapping[str, Component]) ->
     return next(((component, port) for port in component.kind.ports if port.name == port_name), None)
 
 
-def _said(end: End) -> str:
+def _said(end: WireEnd) -> str:
     """A conversion as the bindings write it, so that 1/4 stays 1/4: ``×1/4 +1 in 0…2``."""
     parts = [f"×{end.scale}"] if end.scale else []
     parts += [end.offset if end.offset.startswith(("-", "+")) else f"+{end.offset}"] if end.offset else []
@@ -185,7 +170,7 @@ def _said(end: End) -> str:
     return " ".join(parts)
 
 
-def _units(steps: list[Step]) -> str:
+def _units(steps: list[ConversionStep]) -> str:
     return " ".join(step.reason.replace("->", "→") for step in steps if " -> " in step.reason)
 
 

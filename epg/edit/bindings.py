@@ -2,7 +2,7 @@
 """Changes the binding of one port in a bindings file.  All other text of the file stays as it was written.
 
 >>> text = "version: 1\\nmodel: servo\\ninputs:\\n  angle: encoder   # at the load\\n"
->>> print(set_ends(text, "servo.bindings.yaml", model, "angle", [End("encoder", scale="1/4")]), end="")
+>>> print(set_ends(text, "servo.bindings.yaml", model, "angle", [WireEnd("encoder", scale="1/4")]), end="")
 version: 1
 model: servo
 inputs:
@@ -21,22 +21,23 @@ An edit followed by its reverse gives the old text, with these exceptions:
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
-from epg.check.bindings import UNCONNECTED
-from epg.diagnostics import Diagnostics
-from epg.documents.yaml_file import parse_yaml
-from epg.edit.ends import REFERENCE, End, data_of, ends_of, said_ends
+from epg.edit.ends import REFERENCE, WireEnd, data_of, ends_of, said_ends
 from epg.edit.section import add_port, remove_port
 from epg.edit.value import change_value, value_text
 from epg.edit.yaml_edit import CannotEdit, parse_map
-from epg.models.model import Model
-from epg.source import YamlNode
+from epg.generator.check.bindings import UNCONNECTED
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.yaml_file import parse_yaml
+from epg.generator.models.model import Model
+from epg.generator.source import YamlNode
 
-__all__ = ["CannotEdit", "End", "ends_of", "set_ends"]
+__all__ = ["CannotEdit", "WireEnd", "ends_of", "set_ends"]
 
 
-def set_ends(text: str, file: str, model: Model, port: str, ends: Sequence[End] | None) -> str:
+def set_ends(text: str, file: str, model: Model, port: str, ends: Sequence[WireEnd] | None) -> str:
     """``text`` with ``port`` of ``model`` bound to ``ends``: None removes the port, an empty list is ``unconnected``.
 
     ``file`` is the name of the text in messages.  Wrong numbers and impossible references are written as they are:
@@ -49,6 +50,7 @@ def set_ends(text: str, file: str, model: Model, port: str, ends: Sequence[End] 
     wanted = None if ends is None else tuple(_trimmed(end) for end in ends)
     if wanted is not None:
         _refuse(wanted, file, section, port)
+        wanted = _with_follows(wanted, ends_of(root, section, port) or ())
     before = said_ends(root.get(section, port), section)
     said = None if wanted is None else [data_of(end, section) for end in wanted]
     if repr(before) == repr(said):
@@ -67,7 +69,7 @@ def set_ends(text: str, file: str, model: Model, port: str, ends: Sequence[End] 
     return text[: len(text) - len(body)] + changed
 
 
-def _section_of(root: YamlNode, file: str, model: Model, port: str, ends: Sequence[End] | None) -> str:
+def _section_of(root: YamlNode, file: str, model: Model, port: str, ends: Sequence[WireEnd] | None) -> str:
     """The section of ``port``.  A port that is to be removed can also be in the wrong section."""
     own = [
         section
@@ -87,8 +89,12 @@ def _section_of(root: YamlNode, file: str, model: Model, port: str, ends: Sequen
     return own[0]
 
 
-def _refuse(ends: Sequence[End], file: str, section: str, port: str) -> None:
-    texts = [text for end in ends for text in (end.reference, end.scale, end.offset, *(end.limits or ()), end.unit)]
+def _refuse(ends: Sequence[WireEnd], file: str, section: str, port: str) -> None:
+    texts = [
+        text
+        for end in ends
+        for text in (end.reference, end.scale, end.offset, *(end.limits or ()), end.unit, end.follows)
+    ]
     if any("\ud800" <= character <= "\udfff" for character in "".join((port, *texts))):
         # A surrogate is half of a character beyond U+FFFF.  PyYAML's own parser accepts it, libyaml does not.
         raise CannotEdit(f"{file}: a name or value for '{section}' is not valid text")
@@ -123,6 +129,15 @@ def _others(root: YamlNode, section: str, port: str) -> list[Any]:
     return [ports, *((key, node.plain()) for key, node in root.items() if key != section)]
 
 
-def _trimmed(end: End) -> End:
+def _trimmed(end: WireEnd) -> WireEnd:
     limits = None if end.limits is None else (end.limits[0].strip(), end.limits[1].strip())
-    return End(end.reference.strip(), end.scale.strip(), end.offset.strip(), limits, end.unit.strip())
+    return WireEnd(
+        end.reference.strip(), end.scale.strip(), end.offset.strip(), limits, end.unit.strip(), end.follows.strip()
+    )
+
+
+def _with_follows(wanted: tuple[WireEnd, ...], old: Sequence[WireEnd]) -> tuple[WireEnd, ...]:
+    """``wanted`` with the ``follows`` of the same setpoint in the file, which forms for conversions do not have."""
+    if len(wanted) != 1 or len(old) != 1 or wanted[0].follows or wanted[0].reference != old[0].reference:
+        return wanted
+    return (replace(wanted[0], follows=old[0].follows),)

@@ -15,7 +15,7 @@ from collections.abc import Mapping
 
 from epg.edit.tcf import set_value
 from epg.edit.yaml_edit import parse_map
-from epg.source import YamlNode
+from epg.generator.source import YamlNode
 
 PARAMETERS = "parameters"
 

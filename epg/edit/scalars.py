@@ -14,6 +14,7 @@ _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*")
 _PATH = re.compile(r"(~|\.{1,2}|[A-Za-z0-9_-]*)(/[A-Za-z0-9_.-]+)+")
 _QUANTITY = re.compile(r"[-+]?[0-9][0-9.]*(e[-+]?[0-9]+)? [A-Za-z]+(/[A-Za-z]+)?")
 _RATIO = re.compile(r"[-+]?[0-9][0-9.]*/[-+]?[0-9.]+")
+_PLAIN = (_WORD, _PATH, _QUANTITY, _RATIO)
 # YAML 1.1 reads more words as booleans than YAML 1.2.
 _NO_TEXT = frozenset(("true", "false", "null", "yes", "no", "on", "off", "y", "n"))
 
@@ -24,15 +25,17 @@ def scalar_text(value: object, style: str = "") -> str:
         return "true" if value else "false"
     if value is None:
         return "null"
-    if isinstance(value, float):
+    if isinstance(value, (int, float)):
         return repr(value).replace("inf", ".inf").replace("nan", ".nan")
-    if isinstance(value, int):
-        return repr(value)
     text = str(value)
     if any(character != " " and not character.isprintable() for character in text) or style == '"':
         return _double_quoted(text)
-    plain = any(form.fullmatch(text) for form in (_WORD, _PATH, _QUANTITY, _RATIO)) and text.casefold() not in _NO_TEXT
-    return text if plain and style != "'" else "'" + text.replace("'", "''") + "'"
+    return text if _is_plain(text) and style != "'" else "'" + text.replace("'", "''") + "'"
+
+
+def _is_plain(text: str) -> bool:
+    """True if a text needs no quotes."""
+    return text.casefold() not in _NO_TEXT and any(form.fullmatch(text) for form in _PLAIN)
 
 
 def _double_quoted(text: str) -> str:

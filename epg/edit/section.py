@@ -15,9 +15,9 @@ from itertools import takewhile
 
 import yaml
 
-from epg.dataclass import dataclass
 from epg.edit import yaml_edit
 from epg.edit.scalars import scalar_text
+from epg.generator.dataclass import dataclass
 
 ORDER = ("version", "model", "inputs", "outputs", "parameters", "motors")
 """The keys of a bindings file, in the order in which EPG writes them."""
@@ -274,7 +274,7 @@ def _column(text: str, section: str, head: int) -> int:
     return next((depth for depth in depths if depth > base), base + 2)
 
 
-def _comments(text: str, order: Sequence[str], head: int, taken: Sequence[yaml_edit.Item]) -> dict[str, int]:
+def _comments(text: str, order: Sequence[str], head: int, taken: Sequence[yaml_edit.Extent]) -> dict[str, int]:
     """Port -> position of its comment of :func:`open_port`, between the section's name and the next key.
 
     ``taken`` are the parts of the text with bound ports, whose comments do not count.
@@ -283,12 +283,12 @@ def _comments(text: str, order: Sequence[str], head: int, taken: Sequence[yaml_e
     keys = [yaml_edit.line_start(text, yaml_edit.start_of(key)) for key, _ in root.value]
     end = min((key for key in keys if key > head), default=len(text))
     names = {scalar_text(name): name for name in order}
-    found: dict[str, int] = {}
+    lines: dict[str, int] = {}
     for line in _lines(text, yaml_edit.next_line(text, head), end):
         words = text[line : yaml_edit.line_end(text, line)].strip()
         if any(words == open_section(other) for other in _SECTIONS):
             break
         comment = _OPEN_PORT.fullmatch(words)
         if comment and comment[1] in names and not any(start <= line < stop for start, stop in taken):
-            found.setdefault(names[comment[1]], line)
-    return found
+            lines.setdefault(names[comment[1]], line)
+    return lines

@@ -16,35 +16,41 @@ from __future__ import annotations
 
 import copy
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import yaml
 
-from epg.diagnostics import Diagnostics
-from epg.documents.yaml_file import parse_yaml
 from epg.edit import yaml_edit
 from epg.edit.scalars import scalar_text
+from epg.edit.section import add_port
 from epg.edit.yaml_edit import CannotEdit, parse_map
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.yaml_file import parse_yaml
 
-Value = object
+JsonValue = object
 """A value as JSON has it: a map with texts as keys, a list, a text, a number, a boolean or None."""
 
 COMPONENTS = "components"
-_Change = Callable[[str, tuple[str, ...], Value], str]
-_ORDER = ("version", "extends", "target", "node", "namespace", "clocks", "control", "communication", COMPONENTS)
-"""The usual order of the keys of a ``.tcf``."""
+_Change = Callable[[str, tuple[str, ...], JsonValue], str]
+_ORDER = (
+    *("api", "version", "model", "extends", "target", "node", "namespace", "clocks", "control", "communication"),
+    COMPONENTS,
+)
+"""The usual order of the keys of a ``.tcf``, and of the first keys of other files."""
 _LISTS = ((COMPONENTS,), ("parameters",))
 """The sections with a line for each entry, also if they are short; the second one is that of bindings."""
 _WIDEST = 100
 """The largest number of characters of a line with a new map; a longer map gets a line for each key."""
 
 
-def set_value(text: str, file: str, path: Sequence[str], value: Value) -> str:
+def set_value(text: str, file: str, path: Sequence[str], value: JsonValue, order: Sequence[str] = ()) -> str:
     """``text`` with ``value`` at ``path``.  Missing maps on the way are made.
 
     A map is changed key by key, so the comments between its keys stay.  None removes a component or a parameter that
-    an extended file has.  ``file`` is the name of the text in messages.  Raises
+    an extended file has.  ``file`` is the name of the text in messages.  ``order`` are the names of the ports of a
+    section of bindings: a new one gets its place among them.  Raises
     :class:`~epg.edit.yaml_edit.CannotEdit` if EPG cannot edit the form of the text; then an editor can.
     """
     body = text.removeprefix("\ufeff")
@@ -55,7 +61,8 @@ def set_value(text: str, file: str, path: Sequence[str], value: Value) -> str:
             tree[key] = {}
         tree = tree[key]
     tree[path[-1]] = value
-    return _changed(text, body, _set, file, tuple(path), value, wanted)
+    change = partial(_add_port, order) if order and yaml_edit.find(body, tuple(path)) is None else _set
+    return _changed(text, body, change, file, tuple(path), value, wanted)
 
 
 def remove_value(text: str, file: str, path: Sequence[str]) -> str:
@@ -90,7 +97,7 @@ def rename_key(text: str, file: str, path: Sequence[str], name: str) -> str:
     return _changed(text, body, _rename, file, tuple(path), name, wanted)
 
 
-def _rename(text: str, path: tuple[str, ...], value: Value) -> str:
+def _rename(text: str, path: tuple[str, ...], value: JsonValue) -> str:
     above = yaml_edit.node_at(text, path[:-1])
     key = next(key for key, _ in above.value if key.value == path[-1])
     start, end = yaml_edit.start_of(key), yaml_edit.end_of(text, key)
@@ -104,7 +111,7 @@ def _at(tree: dict[str, Any], path: Sequence[str]) -> dict[str, Any]:
 
 
 def _changed(
-    text: str, body: str, change: _Change, file: str, path: tuple[str, ...], value: Value, wanted: Value
+    text: str, body: str, change: _Change, file: str, path: tuple[str, ...], value: JsonValue, wanted: JsonValue
 ) -> str:
     """Does ``change``, and verifies that the values of the changed text are the ``wanted`` ones."""
     key = ".".join(path)
@@ -120,32 +127,47 @@ def _changed(
     return text[: len(text) - len(body)] + changed
 
 
-def _sorted(value: Value) -> str:
+def _sorted(value: JsonValue) -> str:
     """``value`` as a text that tells 1, 1.0 and true apart, but not the order of keys."""
     return str(json.dumps(value, sort_keys=True, default=repr))
 
 
-def _set(text: str, path: tuple[str, ...], value: Value) -> str:
+def _set(text: str, path: tuple[str, ...], value: JsonValue) -> str:
     node = yaml_edit.find(text, path) if path else yaml_edit.node_at(text, ())
     if node is None:
         return _insert(text, path, value)
     if isinstance(node, yaml.MappingNode) and isinstance(value, Mapping) and node.value and value:
-        for key in [key.value for key, _ in node.value]:
-            if key not in value:
-                text = _remove(text, (*path, key))
-        for key, child in value.items():
-            text = _set(text, (*path, key), child)
-        return text
+        return _set_keys(text, path, [key.value for key, _ in node.value], value)
     if isinstance(node, yaml.ScalarNode) and not isinstance(value, (Mapping, list)):
-        said = parse_yaml(yaml_edit.source_of(text, node), "", Diagnostics())
-        if said is not None and _sorted(said.plain()) == _sorted(value):
-            return text
-        style = str(node.style) if node.style in ("'", '"') else ""
-        return yaml_edit.replace(text, path, scalar_text(value, style if isinstance(value, str) else ""))
+        return _set_scalar(text, path, node, value)
     return _write(text, path, value)
 
 
-def _insert(text: str, path: tuple[str, ...], value: Value) -> str:
+def _set_keys(text: str, path: tuple[str, ...], present: Iterable[str], value: Mapping[str, JsonValue]) -> str:
+    """``text`` with the keys and values of ``value`` in the map at ``path``, which has the keys ``present``."""
+    for key in present:
+        if key not in value:
+            text = _remove(text, (*path, key))
+    for key, child in value.items():
+        text = _set(text, (*path, key), child)
+    return text
+
+
+def _set_scalar(text: str, path: tuple[str, ...], node: yaml.ScalarNode, value: JsonValue) -> str:
+    """``text`` with another scalar at ``path``.  A scalar that says the same stays as it is written."""
+    said = parse_yaml(yaml_edit.source_of(text, node), "", Diagnostics())
+    if said is not None and _sorted(said.plain()) == _sorted(value):
+        return text
+    style = str(node.style) if isinstance(value, str) and node.style in ("'", '"') else ""
+    return yaml_edit.replace(text, path, scalar_text(value, style))
+
+
+def _add_port(order: Sequence[str], text: str, path: tuple[str, ...], value: JsonValue) -> str:
+    section, port = path
+    return add_port(text, section, order, port, _flow(value))
+
+
+def _insert(text: str, path: tuple[str, ...], value: JsonValue) -> str:
     """``text`` with a new key.  The missing maps on its path are written with it."""
     depth = next(n for n in range(len(path) - 1, -1, -1) if yaml_edit.find(text, path[:n]) is not None or n == 0)
     for key in reversed(path[depth + 1 :]):
@@ -165,7 +187,7 @@ def _index(keys: Sequence[str], key: str) -> int:
     return max((index + 1 for index, each in enumerate(keys) if each in before), default=0)
 
 
-def _write(text: str, path: tuple[str, ...], value: Value) -> str:
+def _write(text: str, path: tuple[str, ...], value: JsonValue) -> str:
     """``text`` with ``value`` in place of the one at ``path``: on one line, or with a line for each key of a map.
 
     A section of a file in block style has a line for each key.
@@ -180,7 +202,7 @@ def _write(text: str, path: tuple[str, ...], value: Value) -> str:
     return yaml_edit.replace_by_lines(text, path, [f"  {each}" for each in _block(value, len(path))])
 
 
-def _block(value: Mapping[str, Value], depth: int) -> list[str]:
+def _block(value: Mapping[str, JsonValue], depth: int) -> list[str]:
     lines = []
     for key, child in value.items():
         line = f"{_key(key)}: {_flow(child)}"
@@ -191,7 +213,7 @@ def _block(value: Mapping[str, Value], depth: int) -> list[str]:
     return lines
 
 
-def _flow(value: Value) -> str:
+def _flow(value: JsonValue) -> str:
     if isinstance(value, Mapping):
         return "{" + ", ".join(f"{_key(key)}: {_flow(child)}" for key, child in value.items()) + "}"
     if isinstance(value, list):
@@ -203,7 +225,7 @@ def _key(key: str) -> str:
     return scalar_text(key)
 
 
-def _remove(text: str, path: tuple[str, ...], value: Value = None) -> str:
+def _remove(text: str, path: tuple[str, ...], value: JsonValue = None) -> str:
     parent = yaml_edit.node_at(text, path[:-1])
     if len(parent.value) == 1:
         return yaml_edit.replace(text, path[:-1], "{}")

@@ -11,16 +11,16 @@ from difflib import SequenceMatcher
 
 import yaml
 
-from epg.check.bindings import UNCONNECTED
-from epg.diagnostics import Diagnostics
-from epg.documents.yaml_file import parse_yaml
 from epg.edit import yaml_edit
-from epg.edit.ends import KEYS, REFERENCE, End, typed_value
+from epg.edit.ends import KEYS, REFERENCE, WireEnd, typed_value
 from epg.edit.scalars import scalar_text
 from epg.edit.yaml_edit import Steps
+from epg.generator.check.bindings import UNCONNECTED
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.yaml_file import parse_yaml
 
 
-def change_value(text: str, path: Steps, old: Sequence[End], new: Sequence[End]) -> str:
+def change_value(text: str, path: Steps, old: Sequence[WireEnd], new: Sequence[WireEnd]) -> str:
     """``text`` with the ends ``new`` at ``path`` in place of ``old``."""
     node = yaml_edit.node_at(text, path)
     if not old or not new or not yaml_edit.source_of(text, node):
@@ -37,18 +37,18 @@ def _written(key: str, value: str, style: str = "") -> str:
     return value if not isinstance(typed_value(key, value), str) else scalar_text(value, style)
 
 
-def _key_text(key: str, end: End) -> str:
+def _key_text(key: str, end: WireEnd) -> str:
     if key == "limits":
         assert end.limits is not None
         return f"limits: [{', '.join(_written(key, number) for number in end.limits)}]"
     return f"{key}: {_written(key, getattr(end, key))}"
 
 
-def _keys_of(end: End) -> list[str]:
+def _keys_of(end: WireEnd) -> list[str]:
     return [key for key in KEYS if getattr(end, key) not in ("", None)]
 
 
-def _end_text(end: End, section: str, reference: str = "") -> str:
+def _end_text(end: WireEnd, section: str, reference: str = "") -> str:
     """``end`` on one line.  ``reference`` is the YAML text of its reference in the file, or empty."""
     reference = reference or scalar_text(end.reference)
     if not _keys_of(end):
@@ -57,7 +57,7 @@ def _end_text(end: End, section: str, reference: str = "") -> str:
     return "{" + ", ".join(parts) + "}"
 
 
-def value_text(text: str, ends: Sequence[End], section: str) -> str | list[str]:
+def value_text(text: str, ends: Sequence[WireEnd], section: str) -> str | list[str]:
     """The value of a port on one line, or as indented lines of a list if the file has its lists in this style."""
     texts = [_end_text(end, section) for end in ends]
     if not texts:
@@ -80,14 +80,14 @@ def _list_indent(text: str) -> str | None:
     return " " * int(value.start_mark.column - key.start_mark.column)
 
 
-def _replace_value(text: str, path: Steps, ends: Sequence[End]) -> str:
+def _replace_value(text: str, path: Steps, ends: Sequence[WireEnd]) -> str:
     value = value_text(text, ends, str(path[0]))
     if isinstance(value, str):
         return yaml_edit.replace(text, path, value)
     return yaml_edit.replace_by_lines(text, path, value)
 
 
-def _change_end(text: str, path: Steps, old: End, new: End) -> str:
+def _change_end(text: str, path: Steps, old: WireEnd, new: WireEnd) -> str:
     """``text`` with the end ``new`` at ``path``.  The node there is a scalar or a map that holds ``old``."""
     node = yaml_edit.node_at(text, path)
     key = REFERENCE[str(path[0])]
@@ -100,6 +100,11 @@ def _change_end(text: str, path: Steps, old: End, new: End) -> str:
     reference_node = yaml_edit.node_at(text, (*path, key))
     if old.reference != new.reference or not isinstance(reference_node, yaml.ScalarNode):
         text = yaml_edit.replace(text, (*path, key), _reference_text(text, reference_node, old, new))
+    return _change_keys(text, path, key, present, new)
+
+
+def _change_keys(text: str, path: Steps, key: str, present: list[str], new: WireEnd) -> str:
+    """``text`` with the numbers of ``new`` in the map at ``path``, which has ``key`` and the other keys ``present``."""
     removed = False
     for name in KEYS:
         if name not in _keys_of(new):
@@ -118,7 +123,7 @@ def _change_end(text: str, path: Steps, old: End, new: End) -> str:
     return _without_braces(text, path, (*path, key)) if removed and present == [key] else text
 
 
-def _change_key(text: str, path: Steps, key: str, new: End) -> str:
+def _change_key(text: str, path: Steps, key: str, new: WireEnd) -> str:
     if key != "limits":
         return _change_number(text, path, key, getattr(new, key))
     assert new.limits is not None
@@ -138,7 +143,7 @@ def _change_number(text: str, path: Steps, key: str, new: str) -> str:
     return yaml_edit.replace(text, path, _written(key, new, getattr(node, "style", "") or ""))
 
 
-def _reference_text(text: str, node: yaml.Node, old: End, new: End) -> str:
+def _reference_text(text: str, node: yaml.Node, old: WireEnd, new: WireEnd) -> str:
     """The reference of ``new`` as YAML text: unchanged if it is that of ``old``, else in the same quotes."""
     style = node.style or "" if isinstance(node, yaml.ScalarNode) else ""
     source = yaml_edit.source_of(text, node)
@@ -172,7 +177,7 @@ def _as_list(text: str, path: Steps) -> str:
     return yaml_edit.replace_by_lines(text, path, [f"{indent}- {source}"])
 
 
-def _change_list(text: str, path: Steps, old: Sequence[End], new: Sequence[End]) -> str:
+def _change_list(text: str, path: Steps, old: Sequence[WireEnd], new: Sequence[WireEnd]) -> str:
     """``text`` with the list ``new`` at ``path``.  An end of ``new`` replaces the end of ``old`` with its reference."""
     elements = yaml_edit.node_at(text, path).value
     # The word 'unconnected' beside other elements has no meaning, and stays.
@@ -194,7 +199,7 @@ def _change_list(text: str, path: Steps, old: Sequence[End], new: Sequence[End])
     return text
 
 
-def _changes(old: Sequence[End], new: Sequence[End]) -> Iterator[tuple[str, int, int, int, int]]:
+def _changes(old: Sequence[WireEnd], new: Sequence[WireEnd]) -> Iterator[tuple[str, int, int, int, int]]:
     """The differences between ``old`` and ``new``, the last first, so that indices before a change stay valid."""
     names, wanted = [end.reference for end in old], [end.reference for end in new]
     yield from reversed(SequenceMatcher(None, names, wanted, autojunk=False).get_opcodes())

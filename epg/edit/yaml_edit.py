@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Edits of YAML text that change only the characters of one value or one entry.
 
+The files belong to the user.  PyYAML would write the whole document again, without its comments, blank lines, quotes
+and line ends.  Therefore only its positions are used.
+
 Each function takes the text, finds the place of the edit by the positions of PyYAML's nodes, and returns the new text.
 The functions do not know the meaning of the text, and they do not check the result: callers must parse it again.
 """
@@ -14,15 +17,15 @@ from typing import Any
 
 import yaml
 
-from epg.diagnostics import Diagnostics
-from epg.documents import yaml_file
-from epg.source import YamlNode
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents import yaml_file
+from epg.generator.source import YamlNode
 
 _BREAK = re.compile("\r\n|[\r\n\x85\u2028\u2029]")
 _REST = re.compile(r"[ \t]*(#.*)?")
 Steps = tuple["str | int", ...]
 """The path from the root to a value: keys of maps and indices of lists."""
-Item = tuple[int, int]
+Extent = tuple[int, int]
 """The begin and the end of an entry of a map or an element of a list in the text, without comments and commas."""
 
 
@@ -46,7 +49,8 @@ def parse_map(text: str, file: str) -> YamlNode:
 
 
 def compose(text: str) -> yaml.Node:
-    """PyYAML's root node of ``text``, which :func:`epg.documents.yaml_file.parse_yaml` must have accepted before."""
+    """PyYAML's root node of ``text``, which :func:`epg.generator.documents.yaml_file.parse_yaml` must have accepted
+    before."""
     return _compose(text, yaml_file.LOADER)
 
 
@@ -67,12 +71,14 @@ def find(text: str, path: Steps) -> yaml.Node | None:
     node: yaml.Node = compose(text)
     for step in path:
         if isinstance(node, yaml.MappingNode):
-            found = [value for key, value in node.value if key.value == step]
+            values = [value for key, value in node.value if key.value == step]
         else:
-            found = node.value[step : step + 1] if isinstance(node, yaml.SequenceNode) and isinstance(step, int) else []
-        if not found:
+            values = (
+                node.value[step : step + 1] if isinstance(node, yaml.SequenceNode) and isinstance(step, int) else []
+            )
+        if not values:
             return None
-        node = found[0]
+        node = values[0]
     return node
 
 
@@ -120,14 +126,14 @@ def line_start(text: str, position: int) -> int:
 
 def line_end(text: str, position: int) -> int:
     """The end of the line of ``position``, before its line break."""
-    found = _BREAK.search(text, position)
-    return found.start() if found else len(text)
+    line_break = _BREAK.search(text, position)
+    return line_break.start() if line_break else len(text)
 
 
 def next_line(text: str, position: int) -> int:
     """The begin of the next line, or the end of the text."""
-    found = _BREAK.search(text, position)
-    return found.end() if found else len(text)
+    line_break = _BREAK.search(text, position)
+    return line_break.end() if line_break else len(text)
 
 
 def column_of(text: str, position: int) -> int:
@@ -145,18 +151,18 @@ def insert_lines(text: str, position: int, lines: Sequence[str]) -> str:
 
     If this is the last line and has no line end, the new last line has none either.
     """
-    found = _BREAK.search(text, position)
-    if found:
-        return text[: found.end()] + "".join(line + found[0] for line in lines) + text[found.end() :]
+    line_break = _BREAK.search(text, position)
+    if line_break:
+        return text[: line_break.end()] + "".join(line + line_break[0] for line in lines) + text[line_break.end() :]
     return text + "".join(_line_break(text) + line for line in lines)
 
 
 def remove_lines(text: str, start: int, end: int) -> str:
     """The text without the lines from that of ``start`` to that of ``end``."""
     first = line_start(text, start)
-    found = _BREAK.search(text, end)
-    if found:
-        return text[:first] + text[found.end() :]
+    line_break = _BREAK.search(text, end)
+    if line_break:
+        return text[:first] + text[line_break.end() :]
     return text[: first - 2] if text.endswith("\r\n", 0, first) else text[: max(first - 1, 0)]
 
 
@@ -242,8 +248,8 @@ def insert(text: str, path: Steps, index: int, new: str) -> str:
     indent = " " * column_of(text, first)
     if index > 0:
         return insert_lines(text, items[index - 1][1], [indent + mark + new])
-    found = _BREAK.search(text, first)
-    return f"{text[:first]}{mark}{new}{found[0] if found else _line_break(text)}{indent}{text[first:]}"
+    line_break = _BREAK.search(text, first)
+    return f"{text[:first]}{mark}{new}{line_break[0] if line_break else _line_break(text)}{indent}{text[first:]}"
 
 
 def remove(text: str, path: Steps) -> str:
@@ -267,10 +273,10 @@ def remove(text: str, path: Steps) -> str:
     return text[:start] + text[following:]
 
 
-def _items(text: str, node: yaml.Node) -> list[Item]:
+def _items(text: str, node: yaml.Node) -> list[Extent]:
     if isinstance(node, yaml.MappingNode):
         return [(start_of(key), max(end_of(text, key), end_of(text, value))) for key, value in node.value]
-    items: list[Item] = []
+    items: list[Extent] = []
     position = start_of(node)
     for element in node.value:
         start = start_of(element) if is_flow(node) else skip_gap(text, position)
@@ -291,7 +297,7 @@ def _comma(text: str, end: int) -> int | None:
     return position if text[position : position + 1] == "," else None
 
 
-def _has_own_lines(text: str, item: Item, comma: int | None) -> bool:
+def _has_own_lines(text: str, item: Extent, comma: int | None) -> bool:
     """True if the lines of an entry have only this entry, its comma and a comment."""
     start, end = item
     behind = end if comma is None else comma + 1
@@ -299,7 +305,7 @@ def _has_own_lines(text: str, item: Item, comma: int | None) -> bool:
     return not text[line_start(text, start) : start].strip() and _REST.fullmatch(rest) is not None
 
 
-def _insert_flow(text: str, node: yaml.Node, items: list[Item], index: int, new: str) -> str:
+def _insert_flow(text: str, node: yaml.Node, items: list[Extent], index: int, new: str) -> str:
     """:func:`insert` for a node in braces or brackets.  The entry gets its own line if its neighbour has one."""
     if not items:
         inside = start_of(node) + 1
@@ -311,14 +317,14 @@ def _insert_flow(text: str, node: yaml.Node, items: list[Item], index: int, new:
     first = line_start(text, start)
     indent = text[first:start]
     if index == 0:
-        found = _BREAK.search(text, start)
-        return f"{text[:first]}{indent}{new},{found[0] if found else _line_break(text)}{text[first:]}"
+        line_break = _BREAK.search(text, start)
+        return f"{text[:first]}{indent}{new},{line_break[0] if line_break else _line_break(text)}{text[first:]}"
     if comma is not None:
         return insert_lines(text, comma, [f"{indent}{new},"])
     return insert_lines(f"{text[:end]},{text[end:]}", end + 1, [f"{indent}{new}"])
 
 
-def _remove_flow(text: str, items: list[Item], index: int) -> str:
+def _remove_flow(text: str, items: list[Extent], index: int) -> str:
     """:func:`remove` for a node in braces or brackets, with one of the commas around the entry."""
     start, end = items[index]
     comma = _comma(text, end)
@@ -335,5 +341,5 @@ def _remove_flow(text: str, items: list[Item], index: int) -> str:
 
 
 def _line_break(text: str) -> str:
-    found = _BREAK.search(text)
-    return found[0] if found else "\n"
+    line_break = _BREAK.search(text)
+    return line_break[0] if line_break else "\n"

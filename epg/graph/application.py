@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from epg.dataclass import dataclass
-from epg.emit.topics import Topics
+from epg.generator.dataclass import dataclass
+from epg.generator.emit.topics import Topics
+from epg.generator.models.model import Port
+from epg.generator.quantity import show
+from epg.generator.resolve.application import Application, ConversionStep, ResolvedComponent, Wire
 from epg.graph.svg import Picture, width
 from epg.graph.terminals import wire_texts
-from epg.models.model import Port
-from epg.quantity import show
-from epg.resolve.application import Application, ResolvedComponent, Step, Wire
 
 _ROW = 40.0
 _HIGH = 30.0
@@ -94,7 +94,7 @@ def pin_texts(component: ResolvedComponent, app: Application) -> list[str]:
     return wire_texts(component.kind, component.claims, app.target)
 
 
-def conversion(steps: Sequence[Step]) -> str:
+def conversion(steps: Sequence[ConversionStep]) -> str:
     """The conversion of a wire as text, in the order of its steps: ``×0.5 +1 in -1…1``.  Empty if there is none."""
     parts = []
     for step in steps:

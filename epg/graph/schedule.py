@@ -6,12 +6,10 @@ The boxes are in the order of time.  Their widths do not show durations, because
 
 from __future__ import annotations
 
-from fractions import Fraction
-
-from epg.dataclass import dataclass
+from epg.generator.dataclass import dataclass
+from epg.generator.quantity import show
+from epg.generator.resolve.application import Application, ResolvedComponent, Topic, Wire
 from epg.graph.svg import Picture, width
-from epg.quantity import show
-from epg.resolve.application import Application, ResolvedComponent, Topic, Wire
 
 _SMALL = 10.5
 _LINE = 15.0
@@ -28,39 +26,52 @@ class Stage:
     style: str = "box"
 
 
-# One function, because it lists the stages in the order of the generated loop.
 def control_stages(app: Application) -> tuple[Stage, ...]:
-    """The stages of the control loop between two ticks, in order."""
-    sampled = [
-        c for c in app.components if any(p.direction == "source" for p in c.kind.ports) and not c.kind.communication
-    ]
-    setpoints = [topic for topic in app.subscriptions if topic.role == "values"]
-    guards = [c for c in app.components if c.uses]
-    stages = [Stage("sample", tuple(c.name for c in sampled))] if sampled else []
-    commands = [line for topic in setpoints for line in (f"newest {topic.name}", *_timeout(topic))]
-    if app.fail_safe is not None:
-        commands.append(f"fail-safe {app.fail_safe.name}")
-    stages.append(Stage("commands", (*commands, "enable, faults")))
-    read = [f"{wire.port.name} = {_source(wire)}" for wire in app.inputs]
-    checks = [line for c in guards if not c.kind.communication for line in (f"check {c.name}", *_thresholds(c))]
-    stages.append(Stage("inputs", (*read, *checks)))
+    """The stages of the control loop between two ticks, in the order of the generated loop."""
+    wait = (f"until {show(app.control.output_delay, 'time')}", "after the tick") if app.control.output_delay else ()
+    sampled = tuple(c.name for c in app.components if _is_sampled(c))
+    written = [f"{_source(wire)} = {wire.port.name}" for wire in app.outputs if not wire.component.kind.communication]
+    told = [wire.port.name for wire in app.outputs if wire.component.kind.communication]
+    stages = (
+        Stage("sample", sampled),
+        Stage("commands", (*_commands(app), "enable, faults")),
+        Stage("inputs", (*(f"{wire.port.name} = {_source(wire)}" for wire in app.inputs), *_checks(app))),
+        Stage("model", _step(app), "model"),
+        Stage("wait", wait, "plain"),
+        Stage("outputs", (*written, "disabled: safe outputs")),
+        Stage("hand over", (*told, "statistics")),
+    )
+    return tuple(stage for stage in stages if stage.lines)
+
+
+def _is_sampled(component: ResolvedComponent) -> bool:
+    return not component.kind.communication and any(port.direction == "source" for port in component.kind.ports)
+
+
+def _commands(app: Application) -> list[str]:
+    """The lines about the setpoints and the fail-safe input, which can stop the robot."""
+    topics = [topic for topic in app.subscriptions if topic.role == "values"]
+    lines = [line for topic in topics for line in (f"newest {topic.name}", *_timeout(topic))]
+    return lines if app.fail_safe is None else [*lines, f"fail-safe {app.fail_safe.name}"]
+
+
+def _checks(app: Application) -> list[str]:
+    """The lines about the guards."""
+    guards = [component for component in app.components if component.uses and not component.kind.communication]
+    return [line for guard in guards for line in (f"check {guard.name}", *_thresholds(guard))]
+
+
+def _step(app: Application) -> tuple[str, ...]:
+    """The lines about the step of the model."""
     each = f"every {app.step_divider} cycles" if app.step_divider > 1 else "one step"
     method = (app.model.method,) if app.model.method else ()
-    stages.append(Stage("model", (app.model.name, each, *method, "finite, else disable"), "model"))
-    if app.control.output_delay:
-        stages.append(Stage("wait", (f"until {show(app.control.output_delay, 'time')}", "after the tick"), "plain"))
-    written = [f"{_source(wire)} = {wire.port.name}" for wire in app.outputs if not wire.component.kind.communication]
-    stages.append(Stage("outputs", (*written, "disabled: safe outputs") if written else ("disabled: safe outputs",)))
-    told = [wire.port.name for wire in app.outputs if wire.component.kind.communication]
-    stages.append(Stage("hand over", (*told, "statistics")))
-    return tuple(stages)
+    return app.model.name, each, *method, "finite, else disable"
 
 
 def _timeout(topic: Topic) -> list[str]:
     """The line about the timeout of a setpoint; none if it has none."""
-    parameters = topic.component.parameters if topic.component is not None else {}
-    timeout, action = parameters.get("timeout"), parameters.get("on_timeout")
-    return [f"older than {show(timeout, 'time')}: {action}"] if isinstance(timeout, int | float | Fraction) else []
+    setpoint = next((value.setpoint for value in topic.values if value.setpoint and value.setpoint.timeout), None)
+    return [f"older than {show(setpoint.timeout, 'time')}: {setpoint.on_timeout}"] if setpoint is not None else []
 
 
 def _thresholds(component: ResolvedComponent) -> list[str]:

@@ -5,14 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from epg.catalog.hardware import Target
-from epg.catalog.kind import Kind
-from epg.catalog.layout import Contact, Layout
-from epg.check.configuration import Component
-from epg.dataclass import dataclass
+from epg.generator.catalog.board_layout import Contact, Layout
+from epg.generator.catalog.hardware import Target
+from epg.generator.catalog.kind import Kind
+from epg.generator.check.configuration import Component
+from epg.generator.dataclass import dataclass
+from epg.generator.resolve.allocation import Assignment
+from epg.generator.resolve.claims import ClaimKey
 from epg.graph.svg import WIRES
-from epg.resolve.allocation import Assignment
-from epg.resolve.claims import ClaimKey
 
 
 @dataclass(frozen=True)
@@ -41,14 +41,16 @@ def terminals(
     sides: dict[str, list[Terminal]] = {"left": [], "right": []}
     with_pins = [name for name, component in components.items() if component.kind.pins]
     for name in with_pins:
-        for signal, pin, found in _signals(target, components[name].kind, _claims(name, assignments)):
+        for signal, pin, assignment in _signals(target, components[name].kind, _claims(name, assignments)):
             for side, contacts in places.items():
                 for place, contact in contacts.items():
                     if contact.pin == pin:
                         colour = with_pins.index(name) % WIRES
                         on_board = pin in target.board.onboard
-                        sides[side].append(Terminal(name, signal, contact, place, found.resource, colour, on_board))
-    return {side: sorted(found, key=lambda terminal: terminal.place) for side, found in sides.items()}
+                        sides[side].append(
+                            Terminal(name, signal, contact, place, assignment.resource, colour, on_board)
+                        )
+    return {side: sorted(group, key=lambda terminal: terminal.place) for side, group in sides.items()}
 
 
 def _claims(component: str, assignments: Mapping[ClaimKey, Assignment]) -> dict[str, Assignment]:
@@ -58,12 +60,12 @@ def _claims(component: str, assignments: Mapping[ClaimKey, Assignment]) -> dict[
 def _signals(target: Target, kind: Kind, claims: Mapping[str, Assignment]) -> Iterator[tuple[str, str, Assignment]]:
     """The signals of a component with these ``claims``, each with the pin of the SoC that carries it."""
     for claim in kind.claims:
-        found = claims.get(claim.name)
-        if found is None or not found.pins_are_real:
+        assignment = claims.get(claim.name)
+        if assignment is None or not assignment.pins_are_real:
             continue
         for signal, pin in claim.signals.items():
-            if signal in found.pins:
-                yield pin, target.soc.pins[found.pins[signal]], found
+            if signal in assignment.pins:
+                yield pin, target.soc.pins[assignment.pins[signal]], assignment
 
 
 def elsewhere(
@@ -75,14 +77,14 @@ def elsewhere(
     shown = {contact.pin for row in layout.rows for contact in row.contacts}
     result = []
     for name, component in components.items():
-        found = {signal: pin for signal, pin, _ in _signals(target, component.kind, _claims(name, assignments))}
-        for signal, pin in found.items():
+        pins = {signal: pin for signal, pin, _ in _signals(target, component.kind, _claims(name, assignments))}
+        for signal, pin in pins.items():
             onboard = target.board.onboard.get(pin)
             if pin not in shown or onboard is not None:
                 what = onboard.title if onboard is not None else "see the board's pinout"
                 result.append(f"{name} {signal}: {target.board.pin_title(pin)}, {what}")
         if "node" not in component.node:
-            result += [f"{name} {signal}: no pin" for signal in component.kind.pins if signal not in found]
+            result += [f"{name} {signal}: no pin" for signal in component.kind.pins if signal not in pins]
     return result
 
 

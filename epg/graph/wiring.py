@@ -13,16 +13,16 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping, Sequence
 
-from epg.catalog.hardware import Target
-from epg.catalog.layout import Contact, Layout
-from epg.check.configuration import Component
-from epg.dataclass import dataclass
+from epg.generator.catalog.board_layout import Contact, Layout
+from epg.generator.catalog.hardware import Target
+from epg.generator.check.configuration import Component
+from epg.generator.dataclass import dataclass
+from epg.generator.resolve.allocation import Assignment
+from epg.generator.resolve.claims import ClaimKey
+from epg.generator.resolve.first_fit import ClaimSignal
+from epg.generator.resolve.pin_options import PinOption
 from epg.graph.svg import Picture, width
 from epg.graph.terminals import Terminal, elsewhere, places_of, printed_names, terminals
-from epg.resolve.allocation import Assignment
-from epg.resolve.claims import ClaimKey
-from epg.resolve.first_fit import Signal
-from epg.resolve.pin_options import PinOption
 
 _PITCH, _NARROW_PITCH = 22.0, 14.0  # between two contacts; the narrow one for boards with many
 _MANY = 40  # lines of the grid, from which the narrow pitch is used
@@ -34,10 +34,10 @@ _RESISTOR = "10 kΩ to ground"
 
 
 @dataclass(frozen=True)
-class Choice:
+class PinChoice:
     """A signal that the user has chosen, and its possible pins."""
 
-    signal: Signal
+    signal: ClaimSignal
     options: Sequence[PinOption]
 
     @property
@@ -47,15 +47,99 @@ class Choice:
 
 @dataclass(frozen=True)
 class _Frame:
-    """The measures of a picture, in pixels: from the middle of the board to its contacts, and between two contacts."""
+    """The measures of a picture: from the middle of the board to its contacts, and between two of them, in pixels.
+
+    ``lines`` is the number of lines of the grid.
+    """
 
     inside: float
     pitch: float
+    lines: int
 
     @property
     def gap(self) -> int:
         """The lines of the grid between the last terminal of a component and the first one of the next component."""
         return math.ceil(62 / self.pitch)
+
+
+@dataclass(frozen=True)
+class _Side:
+    """One side of the board in a picture.  ``for_page`` adds the rectangles that react to a pointer."""
+
+    picture: Picture
+    layout: Layout
+    frame: _Frame
+    name: str
+    for_page: bool
+
+    @property
+    def sign(self) -> int:
+        return -1 if self.name == "left" else 1
+
+    @property
+    def inward(self) -> str:
+        """The anchor of texts on the board, which begin or end at its contacts."""
+        return "start" if self.name == "left" else "end"
+
+    @property
+    def outward(self) -> str:
+        """The anchor of texts beside the board."""
+        return "end" if self.name == "left" else "start"
+
+
+@dataclass(frozen=True)
+class _Pad:
+    """A contact at a line of the grid, the terminals that use it, and its option for the signal that was chosen.
+
+    ``wrong`` is True if the pin of one of these terminals is an error.
+    """
+
+    target: Target
+    layout: Layout
+    place: int
+    contact: Contact
+    users: Sequence[Terminal]
+    option: PinOption | None
+    wrong: bool
+
+    @property
+    def state(self) -> str:
+        """ "wrong", also for a pin with two users, a role of the layout, or a state of its option."""
+        if self.wrong:
+            return "wrong"
+        if not self.contact.pin:
+            return self.layout.role(self.contact)
+        if len(self.users) > 1:
+            return "wrong"
+        if self.users and (self.option is None or self.option.state in ("current", "used")):
+            return "used"
+        if self.option is not None and self.option.state in ("fits", "unfit", "reserved"):
+            return self.option.state
+        return "reserved" if self.contact.pin in self.target.board.reserved else "contact"
+
+    @property
+    def note(self) -> str:
+        """The facts about the contact that the pointer shows."""
+        if not self.contact.pin:
+            return self.layout.supplies[self.contact.name].title
+        if self.option is not None and self.option.reason and self.option.state != "current":
+            return self.option.reason
+        used = " and ".join(f"{terminal.component} {terminal.signal}" for terminal in self.users)
+        onboard = self.target.board.onboard.get(self.contact.pin)
+        return used or self.target.board.reserved.get(self.contact.pin, onboard.title if onboard is not None else "")
+
+    @property
+    def title(self) -> str:
+        name = _contact_name(self.target, self.contact)
+        shown = f"contact {self.contact.title}: {name}" if self.contact.title else name
+        return f"{shown}: {self.note}" if self.note else shown
+
+    @property
+    def weight(self) -> str:
+        """The style of its name."""
+        if self.state in ("unfit", "reserved"):
+            return "faint"
+        return "bold" if self.users or self.state in ("ground", "supply", "fits") else ""
 
 
 @dataclass(frozen=True)
@@ -90,8 +174,8 @@ def draw_wiring(
     components: Mapping[str, Component],
     assignments: Mapping[ClaimKey, Assignment],
     title: str,
-    choice: Choice | None = None,
-    wrong: Collection[Signal] = (),
+    choice: PinChoice | None = None,
+    wrong: Collection[ClaimSignal] = (),
     *,
     for_page: bool = False,
 ) -> str:
@@ -105,30 +189,44 @@ def draw_wiring(
     layout = board.layout
     assert layout is not None
     sides = terminals(target, components, assignments)
+    soldered = {side: [terminal for terminal in contents if not terminal.on_board] for side, contents in sides.items()}
     others = elsewhere(target, components, assignments)
-    picture = Picture(f"{title}: wiring of {board.summary}", _description(target, layout, sides, others))
+    picture = Picture(f"{title}: wiring of {board.summary}", _description(target, layout, soldered, others))
+    frame = _frame(target, layout, sides)
+    _board(picture, layout, frame, board.summary, title)
+    seen: set[str] = set()
+    for name, contents in sides.items():
+        side = _Side(picture, layout, frame, name, for_page)
+        pads = _pads(target, layout, name, contents, choice, wrong)
+        seen.update(pad.state for pad in pads)
+        _contacts(side, pads)
+        _row_titles(side)
+        other = {each.component for key, there in soldered.items() if key != name for each in there}
+        _soldered(side, _parts(components, soldered[name], other))
+    driven = any(drives(components[each.component]) for contents in soldered.values() for each in contents)
+    rules = _rules(layout, others, driven=driven)
+    _notes(picture, _marks(layout, seen, choice), rules)
+    return picture.render()
+
+
+def _frame(target: Target, layout: Layout, sides: Collection[str]) -> _Frame:
+    """The measures: the names of all contacts have room on the board."""
     lines = 1 + max((max(places_of(layout, side), default=0) for side in sides), default=0)
     names = [_contact_name(target, contact) for row in layout.rows for contact in row.contacts]
     inside = max(_INSIDE, 40 + max(width(name, 11) for name in names))
-    frame = _Frame(inside, _PITCH if lines <= _MANY else _NARROW_PITCH)
-    picture.box(-inside, -_HEAD, 2 * inside, lines * frame.pitch + _HEAD + 11, "board", round=8)
+    return _Frame(inside, _PITCH if lines <= _MANY else _NARROW_PITCH, lines)
+
+
+def _board(picture: Picture, layout: Layout, frame: _Frame, summary: str, title: str) -> None:
+    """Draws the board without its contacts, and the titles above it."""
+    picture.box(-frame.inside, -_HEAD, 2 * frame.inside, frame.lines * frame.pitch + _HEAD + 11, "board", round=8)
     if layout.top:
         wide = width(layout.top, 12) + 20
         picture.box(-wide / 2, -_HEAD - 8, wide, 26, "box")
         picture.text(0, -_HEAD + 9, layout.top, "middle")
     picture.text(0, -_HEAD - 38, title, "middle", 15, "bold")
-    told = board.summary if layout.to_scale else f"{board.summary}, not to scale"
+    told = summary if layout.to_scale else f"{summary}, not to scale"
     picture.text(0, -_HEAD - 18, told, "middle", 12, "bold")
-    states = {option.pin: option for option in choice.options} if choice is not None else {}
-    seen: set[str] = set()
-    for side, found in sides.items():
-        seen |= _contacts(picture, target, frame, side, found, states, wrong, for_page)
-        other = {each.component for name in sides if name != side for each in sides[name] if not each.on_board}
-        soldered = [terminal for terminal in found if not terminal.on_board]
-        _side(picture, layout, frame, side, _parts(components, soldered, other), for_page)
-    used = {terminal.component for found in sides.values() for terminal in found if not terminal.on_board}
-    _notes(picture, layout, others, any(drives(components[name]) for name in used), seen, choice)
-    return picture.render()
 
 
 def _contact_name(target: Target, contact: Contact) -> str:
@@ -138,84 +236,50 @@ def _contact_name(target: Target, contact: Contact) -> str:
     return " ".join(filter(None, (target.board.pin_title(contact.pin), printed_names(target, contact.pin))))
 
 
-def _contacts(
-    picture: Picture,
+def _pads(
     target: Target,
-    frame: _Frame,
+    layout: Layout,
     side: str,
     found: Sequence[Terminal],
-    options: Mapping[str, PinOption],
-    wrong: Collection[Signal],
-    for_page: bool,
-) -> set[str]:
-    """Draws the contacts of a side, and returns their states."""
-    layout = target.board.layout
-    assert layout is not None
-    sign = -1 if side == "left" else 1
-    anchor = "start" if side == "left" else "end"
+    choice: PinChoice | None,
+    wrong: Collection[ClaimSignal],
+) -> list[_Pad]:
+    """The contacts of a side.  ``found`` are its terminals."""
+    options = {option.pin: option for option in choice.options} if choice is not None else {}
     users: dict[int, list[Terminal]] = {}
     for terminal in found:
         users.setdefault(terminal.place, []).append(terminal)
-    seen = set()
-    for place, contact in places_of(layout, side).items():
-        x, y = sign * frame.inside, place * frame.pitch
-        state = _state(target, layout, contact, users.get(place, []), options)
-        if any((terminal.component, terminal.signal) in wrong for terminal in users.get(place, [])):
-            state = "wrong"
-        seen.add(state)
-        name = _contact_name(target, contact)
-        note = _note(target, layout, contact, users.get(place, []), options)
-        shown = f"contact {contact.title}: {name}" if contact.title else name
-        shown += f": {note}" if note else ""
-        colour = users[place][0].colour if place in users else 0
-        _contact(picture, x, y, state, shown, colour)
-        if contact.pin in options and options[contact.pin].state == "current":
+    mistaken = {terminal.place for terminal in found if (terminal.component, terminal.signal) in wrong}
+    return [
+        _Pad(target, layout, place, contact, users.get(place, []), options.get(contact.pin), place in mistaken)
+        for place, contact in places_of(layout, side).items()
+    ]
+
+
+def _contacts(side: _Side, pads: Sequence[_Pad]) -> None:
+    """Draws the contacts of a side, with their numbers and names."""
+    picture, frame, sign = side.picture, side.frame, side.sign
+    for pad in pads:
+        x, y = sign * frame.inside, pad.place * frame.pitch
+        _contact(picture, x, y, pad.state, pad.title, pad.users[0].colour if pad.users else 0)
+        if pad.option is not None and pad.option.state == "current":
             picture.box(x - 9, y - 7, 18, 14, "chosen", round=3)
-        if contact.number is not None:
-            picture.text(x - sign * 12, y + 4, str(contact.number), anchor, _SMALL, "faint")
-        weight = "bold" if place in users or state in ("ground", "supply", "fits") else ""
-        weight = "faint" if state in ("unfit", "reserved") else weight
-        picture.text(x - sign * 34, y + 4, name, anchor, 11, weight)
-        if for_page and contact.pin:
+        if pad.contact.number is not None:
+            picture.text(x - sign * 12, y + 4, str(pad.contact.number), side.inward, _SMALL, "faint")
+        picture.text(x - sign * 34, y + 4, _contact_name(pad.target, pad.contact), side.inward, 11, pad.weight)
+        if side.for_page and pad.contact.pin:
             left = x - 10 if sign < 0 else 4.0
-            data = {"pin": target.board.pin_title(contact.pin)}
-            picture.hit(left, y - frame.pitch / 2, frame.inside + 6, frame.pitch, data, shown)
+            data = {"pin": pad.target.board.pin_title(pad.contact.pin)}
+            picture.hit(left, y - frame.pitch / 2, frame.inside + 6, frame.pitch, data, pad.title)
+
+
+def _row_titles(side: _Side) -> None:
     line = 0
-    for row in layout.rows:
-        if row.side == side:
-            picture.text(sign * (frame.inside - 12), line * frame.pitch - 12, row.title, anchor, 11, "bold")
+    for row in side.layout.rows:
+        if row.side == side.name:
+            x, y = side.sign * (side.frame.inside - 12), line * side.frame.pitch - 12
+            side.picture.text(x, y, row.title, side.inward, 11, "bold")
             line += len(row.contacts) + 2
-    return seen
-
-
-def _state(
-    target: Target, layout: Layout, contact: Contact, users: Sequence[Terminal], options: Mapping[str, PinOption]
-) -> str:
-    """The state of a contact: "wrong" for a pin with two users, a role of the layout, or a state of its option."""
-    if not contact.pin:
-        return layout.role(contact)
-    if len(users) > 1:
-        return "wrong"
-    option = options.get(contact.pin)
-    if users and (option is None or option.state in ("current", "used")):
-        return "used"
-    if option is not None and option.state in ("fits", "unfit", "reserved"):
-        return option.state
-    return "reserved" if contact.pin in target.board.reserved else "contact"
-
-
-def _note(
-    target: Target, layout: Layout, contact: Contact, users: Sequence[Terminal], options: Mapping[str, PinOption]
-) -> str:
-    """The facts about a contact that the pointer shows."""
-    if not contact.pin:
-        return layout.supplies[contact.name].title
-    used = " and ".join(f"{terminal.component} {terminal.signal}" for terminal in users)
-    option = options.get(contact.pin)
-    if option is not None and option.reason and option.state != "current":
-        return option.reason
-    onboard = target.board.onboard.get(contact.pin)
-    return used or target.board.reserved.get(contact.pin, onboard.title if onboard is not None else "")
 
 
 def _contact(picture: Picture, x: float, y: float, state: str, title: str = "", colour: int = 0) -> None:
@@ -266,61 +330,81 @@ def drives(component: Component) -> bool:
     return any(port.actuator for port in component.kind.ports)
 
 
-def _side(picture: Picture, layout: Layout, frame: _Frame, side: str, parts: Sequence[_Part], for_page: bool) -> None:
+@dataclass(frozen=True)
+class _Columns:
+    """The distances from the middle of the board to the first lane and to the components; the width of these."""
+
+    near: float
+    edge: float
+    wide: float
+
+
+def _soldered(side: _Side, parts: Sequence[_Part]) -> None:
+    """Draws the components of a side, and their wires."""
     if not parts:
         return
-    sign = -1 if side == "left" else 1
-    places = places_of(layout, side)
-    grounds = _grounds([place for place, contact in places.items() if layout.role(contact) == "ground"], parts)
+    frame = side.frame
     told: dict[int, list[str]] = {}
     for terminal in (each for part in parts for each in part.terminals):
         told.setdefault(terminal.place, []).append(f"{terminal.component} {terminal.signal}")
-    labels = max(width(", ".join(texts), _SMALL) for texts in told.values())
-    near = frame.inside + 14 + labels + 10  # the position of the first lane
-    edge = near + sum(part.rows for part in parts) * _LANE + 10  # the inner edge of the components
-    wide = 24 + max(
-        max(width(part.component.name), width(part.kind, _SMALL), width(_RESISTOR, _SMALL)) for part in parts
-    )
+    labels = {place: ", ".join(texts) for place, texts in told.items()}
+    columns = _columns(frame, parts, max(width(label, _SMALL) for label in labels.values()))
+    places = places_of(side.layout, side.name)
+    grounds = _grounds([p for p, contact in places.items() if side.layout.role(contact) == "ground"], parts)
     wires: list[_Wire] = []
     for part, first, ground in zip(parts, _lines(parts, max(places), frame), grounds, strict=True):
-        top = first * frame.pitch - 32
-        high = part.rows * frame.pitch + (54 if drives(part.component) else 38)
-        x = edge if sign > 0 else -edge - wide
-        picture.box(x, top, wide, high, "box", part.component.kind.summary)
-        tx = x + 12 if sign > 0 else x + wide - 12
-        anchor = "start" if sign > 0 else "end"
-        picture.text(tx, top + 15, part.component.name, anchor, 12, f"bold t{part.colour}")
-        picture.text(tx, top + 29, part.kind, anchor, _SMALL, "faint")
-        for index, terminal in enumerate(part.terminals):
-            y = (first + index + 0.5) * frame.pitch
-            picture.text(tx, y + 4, terminal.signal, anchor, 11)
-            what = f"{terminal.component} {terminal.signal}"
-            label = ", ".join(told.pop(terminal.place, []))  # the first wire of a contact has the label of all
-            wires.append(
-                _Wire(
-                    terminal.place,
-                    y,
-                    label,
-                    what + (f": {terminal.resource}" if terminal.resource else ""),
-                    f"w{part.colour}",
-                )
-            )
-            if for_page:
-                data = {"signal": f"{terminal.component}.{terminal.signal}"}
-                picture.hit(x, y - frame.pitch / 2, wide, frame.pitch, data, f"{what}: {terminal.contact.name}")
-        y = (first + part.rows - 0.5) * frame.pitch
-        picture.text(tx, y + 4, "GND", anchor, 11)
-        if ground is not None:
-            wires.append(_Wire(ground, y, "", f"ground of {part.component.name}", "earth"))
-        if drives(part.component):
-            picture.text(tx, top + high - 9, _RESISTOR, anchor, _SMALL, "faint")
-    _wires(picture, frame, sign, near, edge, wires)
-    for wire in wires if for_page else ():
-        component, _, signal = wire.title.partition(":")[0].partition(" ")
+        _component(side, part, first, columns)
+        wires += _wires_of(part, first, ground, frame.pitch, labels)
+    _wires(side, columns, wires)
+    for wire in wires if side.for_page else ():
         if wire.label:
-            left = sign * (frame.inside + 14) if sign > 0 else -near
-            data = {"signal": f"{component}.{signal}"}
-            picture.hit(left, wire.place * frame.pitch - 14, near - frame.inside - 14, 18, data, wire.title)
+            left = frame.inside + 14 if side.sign > 0 else -columns.near
+            y, wide = wire.place * frame.pitch - 14, columns.near - frame.inside - 14
+            side.picture.hit(left, y, wide, 18, {"signal": wire.signal}, wire.title)
+
+
+def _columns(frame: _Frame, parts: Sequence[_Part], labels: float) -> _Columns:
+    """The columns beside a board with room for the ``labels`` of the wires, a lane per wire, and all names."""
+    near = frame.inside + 14 + labels + 10
+    edge = near + sum(part.rows for part in parts) * _LANE + 10
+    names = [max(width(part.component.name), width(part.kind, _SMALL)) for part in parts]
+    return _Columns(near, edge, 24 + max(*names, width(_RESISTOR, _SMALL)))
+
+
+def _component(side: _Side, part: _Part, first: int, columns: _Columns) -> None:
+    """Draws a component whose first terminal is below the line ``first`` of the grid."""
+    picture, pitch, wide, anchor = side.picture, side.frame.pitch, columns.wide, side.outward
+    driven = drives(part.component)
+    top, high = first * pitch - 32, part.rows * pitch + (54 if driven else 38)
+    x = columns.edge if side.sign > 0 else -columns.edge - wide
+    tx = x + 12 if side.sign > 0 else x + wide - 12
+    picture.box(x, top, wide, high, "box", part.component.kind.summary)
+    picture.text(tx, top + 15, part.component.name, anchor, 12, f"bold t{part.colour}")
+    picture.text(tx, top + 29, part.kind, anchor, _SMALL, "faint")
+    for index, terminal in enumerate(part.terminals):
+        y = (first + index + 0.5) * pitch
+        picture.text(tx, y + 4, terminal.signal, anchor, 11)
+        if side.for_page:
+            data = {"signal": f"{terminal.component}.{terminal.signal}"}
+            title = f"{terminal.component} {terminal.signal}: {terminal.contact.name}"
+            picture.hit(x, y - pitch / 2, wide, pitch, data, title)
+    picture.text(tx, (first + part.rows - 0.5) * pitch + 4, "GND", anchor, 11)
+    if driven:
+        picture.text(tx, top + high - 9, _RESISTOR, anchor, _SMALL, "faint")
+
+
+def _wires_of(part: _Part, first: int, ground: int | None, pitch: float, labels: dict[int, str]) -> list[_Wire]:
+    """The wires of a component.  The first one of a contact takes its label, which is that of all, from ``labels``."""
+    wires = []
+    for index, terminal in enumerate(part.terminals):
+        title = f"{terminal.component} {terminal.signal}" + (f": {terminal.resource}" if terminal.resource else "")
+        y, label = (first + index + 0.5) * pitch, labels.pop(terminal.place, "")
+        signal = f"{terminal.component}.{terminal.signal}"
+        wires.append(_Wire(terminal.place, y, label, title, f"w{part.colour}", signal))
+    if ground is not None:
+        y = (first + part.rows - 0.5) * pitch
+        wires.append(_Wire(ground, y, "", f"ground of {part.component.name}", "earth"))
+    return wires
 
 
 def _lines(parts: Sequence[_Part], last: int, frame: _Frame) -> list[int]:
@@ -358,73 +442,84 @@ def _grounds(grounds: Sequence[int], parts: Sequence[_Part]) -> list[int | None]
 
 @dataclass(frozen=True)
 class _Wire:
-    """A wire from the contact at line ``place`` of the grid to the terminal at height ``y``, in pixels."""
+    """A wire from the contact at line ``place`` of the grid to the terminal at height ``y``, in pixels.
+
+    ``signal`` is empty for the ground.
+    """
 
     place: int
     y: float
     label: str
     title: str
     style: str
+    signal: str = ""
 
 
-def _wires(picture: Picture, frame: _Frame, sign: int, near: float, edge: float, wires: Sequence[_Wire]) -> None:
+def _wires(side: _Side, columns: _Columns, wires: Sequence[_Wire]) -> None:
     """Draws the wires, with lanes in the order in which the fewest wires cross.
 
     Wires that go down have the inner lanes, the lowest contact first.  Wires that go up have the outer lanes, the
     topmost contact first.
     """
-    pitch = frame.pitch
+    inside, pitch, sign = side.frame.inside, side.frame.pitch, side.sign
     down = sorted((wire for wire in wires if wire.y > wire.place * pitch), key=lambda wire: (-wire.place, -wire.y))
     up = sorted((wire for wire in wires if wire.y <= wire.place * pitch), key=lambda wire: (wire.place, wire.y))
     size, above = (_SMALL, 5) if pitch == _PITCH else (9.5, 4)
-    anchor = "start" if sign > 0 else "end"
     for lane, wire in enumerate([*down, *up]):
-        second = not wire.label and wire.style != "earth"  # at a contact that another wire uses, too
-        x, y = sign * (near + lane * _LANE), wire.place * pitch + (4 if second else 0)
-        points = [(sign * (frame.inside + 5), y), (x, y), (x, wire.y), (sign * edge, wire.y)]
-        picture.line(points, wire.style, wire.title)
+        second = wire.signal and not wire.label  # at a contact that another wire uses, too
+        x, y = sign * (columns.near + lane * _LANE), wire.place * pitch + (4 if second else 0)
+        points = [(sign * (inside + 5), y), (x, y), (x, wire.y), (sign * columns.edge, wire.y)]
+        side.picture.line(points, wire.style, wire.title)
         style = wire.style.replace("w", "t")
-        picture.text(sign * (frame.inside + 12), y - above, wire.label, anchor, size, style)
+        side.picture.text(sign * (inside + 12), y - above, wire.label, side.outward, size, style)
 
 
-def _notes(
-    picture: Picture,
-    layout: Layout,
-    others: Sequence[str],
-    driven: bool,
-    seen: Collection[str],
-    choice: Choice | None,
-) -> None:
-    """Writes the notes below the picture: the states of contacts, the supplies of the board, and rules for all wires.
-
-    ``seen`` are the states that the picture shows.
-    """
+def _supplies(layout: Layout) -> dict[str, str]:
+    """The contacts without a pin, with their numbers in each row of the board, such as "J1 3, 5; J2 1"."""
     numbers: dict[str, dict[str, list[int]]] = {}  # contact -> row -> numbers
     for contact in (contact for row in layout.rows for contact in row.contacts):
         if not contact.pin and contact.number is not None:
             numbers.setdefault(contact.name, {}).setdefault(contact.row, []).append(contact.number)
-    places = {
+    return {
         name: "; ".join(f"{row} {', '.join(map(str, sorted(found)))}".strip() for row, found in rows.items())
         for name, rows in numbers.items()
     }
-    texts = [f"{name} ({place}): {layout.supplies[name].title}" for name, place in places.items()]
+
+
+def _marks(layout: Layout, seen: Collection[str], choice: PinChoice | None) -> list[tuple[str, str]]:
+    """The states of contacts and the supplies of the board, with their meanings.
+
+    ``seen`` are the states that the picture shows.
+    """
     marks = [(state, text) for state, text in _legend(choice) if state in seen or state in ("used", "contact")]
     if choice is not None:
         marks.remove(("contact", _FREE))
-    marks += [(layout.supplies[name].role, text) for name, text in zip(places, texts, strict=True)]
-    feeding = [f"{name} ({place})" for name, place in places.items() if layout.supplies[name].feeds_components]
-    general = [*others, *layout.notes, "Seen from above. Dashed: grounds, which are all connected."]
+    for name, place in _supplies(layout).items():
+        marks.append((layout.supplies[name].role, f"{name} ({place}): {layout.supplies[name].title}"))
+    return marks
+
+
+def _rules(layout: Layout, others: Sequence[str], *, driven: bool) -> list[str]:
+    """The rules for all wires.  ``driven`` means that the board drives some of them."""
+    rules = [*others, *layout.notes, "Seen from above. Dashed: grounds, which are all connected."]
+    supplies = _supplies(layout).items()
+    feeding = [f"{name} ({place})" for name, place in supplies if layout.supplies[name].feeds_components]
     if feeding:
-        general.append(f"VCC of encoders and other sensors: {' or '.join(feeding)}. Motors need a separate supply.")
+        rules.append(f"VCC of encoders and other sensors: {' or '.join(feeding)}. Motors need a separate supply.")
     if driven:
-        general.append(f"{_RESISTOR}: from each wire of the component, which floats until the firmware runs.")
-    x = -max(width(text, 11) for text in [*(text for _, text in marks), *general]) / 2
+        rules.append(f"{_RESISTOR}: from each wire of the component, which floats until the firmware runs.")
+    return rules
+
+
+def _notes(picture: Picture, marks: Sequence[tuple[str, str]], rules: Sequence[str]) -> None:
+    """Writes the notes below the picture."""
+    x = -max(width(text, 11) for text in [*(text for _, text in marks), *rules]) / 2
     y = picture.bottom + 34
     for state, text in marks:
         _contact(picture, x - 12, y - 4, state)
         picture.text(x, y, text, size=11)
         y += 20
-    for text in general:
+    for text in rules:
         picture.text(x, y, text, size=11, style="faint")
         y += 18
 
@@ -432,7 +527,7 @@ def _notes(
 _FREE = "free pin"
 
 
-def _legend(choice: Choice | None) -> list[tuple[str, str]]:
+def _legend(choice: PinChoice | None) -> list[tuple[str, str]]:
     """The states of contacts with a pin, and their meanings."""
     result = [
         ("used", "used: the colour is that of the wire"),
@@ -450,11 +545,6 @@ def _told(target: Target, contact: Contact) -> str:
 
 
 def _description(target: Target, layout: Layout, sides: Mapping[str, Sequence[Terminal]], others: Sequence[str]) -> str:
-    wires = [
-        f"{t.component} {t.signal} to {_told(target, t.contact)}"
-        for found in sides.values()
-        for t in found
-        if not t.on_board
-    ]
+    wires = [f"{t.component} {t.signal} to {_told(target, t.contact)}" for found in sides.values() for t in found]
     told = "; ".join([*wires, *others]) or "no wires"
     return f"{target.board.summary} seen from above, {layout.top} at the top: {told}."

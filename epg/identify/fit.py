@@ -20,7 +20,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from epg.dataclass import dataclass
+from epg.generator.dataclass import dataclass
 from epg.identify.motor import travel
 from epg.identify.samples import Samples
 
@@ -32,7 +32,7 @@ _OFFSET, _GAIN, _TAU, _FRICTION, _DELAY, _SPEED = range(6)
 
 
 @dataclass(frozen=True)
-class Value:
+class FittedValue:
     """An identified value with its standard error, in the same unit."""
 
     value: float
@@ -48,10 +48,10 @@ class Fit:
     of measured - simulated.
     """
 
-    gain: Value
-    time_constant: Value
-    friction: Value
-    delay: Value
+    gain: FittedValue
+    time_constant: FittedValue
+    friction: FittedValue
+    delay: FittedValue
     simulated: Any
     rms: float
 
@@ -119,10 +119,10 @@ def fit(samples: Samples, *, dead_zone: bool = False) -> Fit:
     errors[free] = _errors(slopes, residual_of(unknowns), _ROUNDED if rms < samples.resolution else 1.0)
     tau = math.exp(unknowns[_TAU])
     return Fit(
-        gain=Value(float(unknowns[_GAIN]), float(errors[_GAIN])),
-        time_constant=Value(tau, tau * float(errors[_TAU])),
-        friction=Value(float(unknowns[_FRICTION]), float(errors[_FRICTION])),
-        delay=Value(float(unknowns[_DELAY]), float(errors[_DELAY])),
+        gain=FittedValue(float(unknowns[_GAIN]), float(errors[_GAIN])),
+        time_constant=FittedValue(tau, tau * float(errors[_TAU])),
+        friction=FittedValue(float(unknowns[_FRICTION]), float(errors[_FRICTION])),
+        delay=FittedValue(float(unknowns[_DELAY]), float(errors[_DELAY])),
         simulated=simulated,
         rms=rms,
     )
@@ -134,7 +134,7 @@ def _starts(
     """Rough solutions with their sums of squares."""
     import numpy as np
 
-    found = []
+    guesses = []
     speeds = (0.0,) if samples.at_rest else (0.0, samples.speed)
     for tau in np.geomspace(step, length, _TAUS):
         for friction in _FRICTIONS:
@@ -152,8 +152,8 @@ def _starts(
                 curve = gain * unit(guess)
                 guess[_OFFSET] = float((samples.position - curve).mean())
                 residual = samples.position - curve - guess[_OFFSET]
-                found.append((float(residual @ residual), guess))
-    return found
+                guesses.append((float(residual @ residual), guess))
+    return guesses
 
 
 def _different(starts: list[tuple[float, Any]]) -> list[Any]:

@@ -5,12 +5,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from epg.diagnostics import Diagnostics
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.source import Span
 from epg.identify.samples import FEWEST_ROWS, Samples
-from epg.source import Span
 
 if TYPE_CHECKING:
-    from epg.identify.fit import Fit, Value
+    from epg.identify.fit import Fit, FittedValue
 
 FEWEST_COUNTS = 20
 MOST_ERROR = 0.1
@@ -104,6 +104,6 @@ def _rms(fit: Fit, samples: Samples) -> str:
     return f"the RMS of measured - simulated is {100.0 * fit.rms / samples.moved:.1f} % of the way"
 
 
-def relative(value: Value) -> float:
+def relative(value: FittedValue) -> float:
     """The error of a value for a confidence of 95 %, as a share of the value."""
     return 2.0 * value.error / abs(value.value) if value.value else float("inf")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from epg.identify.fit import Fit
 from epg.identify.samples import Samples
-from epg.simulate.picture import BLUE, ORANGE, SMALL, Arrangement, legend, panels, save, with_unit
+from epg.runs.plot_style import BLUE, ORANGE, SMALL, Arrangement, legend, panels, save, with_unit
 
 _HEIGHTS = (3.0, 1.1, 1.1)
 

@@ -24,7 +24,7 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import Any, NamedTuple
 
-from epg.dataclass import dataclass
+from epg.generator.dataclass import dataclass
 
 FEWEST_ROWS, MOST_ROWS = 30, 2500
 _PAD = 0.1  # rest that is kept on both sides, as a share of the movement
@@ -32,7 +32,7 @@ _STILL = 10  # samples without a count that are a rest
 _GAP = 2.5  # sampling periods
 
 
-class Points(NamedTuple):
+class SamplePairs(NamedTuple):
     """Each point is the mean of the rows ``first[i]`` and ``second[i]``."""
 
     first: Any
@@ -55,7 +55,7 @@ class Samples:
     time: Any
     position: Any
     duty: Any
-    points: Points
+    points: SamplePairs
     changes: list[float]
     duties: list[float]
     period: float
@@ -83,22 +83,19 @@ def samples_of(time: Any, position: Any, duty: Any) -> Samples:
     noise = 1e-6 * float(np.abs(position).max() + np.ptp(position))
     real = steps[steps > noise]
     resolution = _resolution(real)
-    fractions = np.abs(real / resolution - np.round(real / resolution)) if len(real) else real
     stops = _stops(position, duty, resolution)
     jumps = _jumps(steps / np.maximum(np.diff(time) / period, 1.0), resolution)
     gaps = np.nonzero((np.diff(time) > _GAP * period) & (np.diff(duty) != 0.0))[0] + 1
-    edges = sorted({0, len(time), *jumps, *gaps.tolist(), *(edge for stop in stops for edge in stop)})
-    parts = [(a, b) for a, b in pairwise(edges) if not any(begin <= a < end for begin, end in stops)]
-    begin, end = max(parts, key=lambda part: _worth(position[part[0] : part[1]]), default=(0, len(time)))
     stopped = float(time[stops[0][0]]) if stops else None
     jumped = float(time[min(jumps)]) if jumps else None
+    begin, end = _longest(position, {*jumps, *gaps.tolist()}, stops)
     begin, end = _without_rest(position, duty, begin, end, resolution)
     begin, end = _liveliest(position, begin, end)
     time, position, duty = time[begin:end], position[begin:end], duty[begin:end]
-    changed = np.concatenate(([0], np.nonzero(np.diff(duty))[0] + 1)) if len(duty) else np.array([], dtype=int)
-    moves = np.abs(position - position[0]) > 0.5 * resolution if len(position) else np.array([], dtype=bool)
+    changed = np.concatenate(([0], np.nonzero(np.diff(duty))[0] + 1))
+    moves = np.abs(position - position[0]) > 0.5 * resolution
     first = int(moves.argmax()) if moves.any() else len(moves)
-    driven = int((duty != 0.0).argmax()) if len(duty) and (duty != 0.0).any() else 0
+    driven = int((duty != 0.0).argmax())
     head = min(len(time), max(_STILL, 2 + first))
     return Samples(
         time=time,
@@ -109,8 +106,8 @@ def samples_of(time: Any, position: Any, duty: Any) -> Samples:
         duties=[float(duty[at]) for at in changed],
         period=period,
         resolution=resolution,
-        counted=bool((fractions < 0.05).mean() > 0.9) if len(real) else False,
-        moved=float(np.ptp(position)) if len(position) else 0.0,
+        counted=_counted(real, resolution),
+        moved=float(np.ptp(position)),
         at_rest=driven >= _STILL and first >= driven,
         speed=float(position[head - 1] - position[0]) / max(float(time[head - 1] - time[0]), period) if head > 1 else 0,
         stop=stopped,
@@ -118,7 +115,24 @@ def samples_of(time: Any, position: Any, duty: Any) -> Samples:
     )
 
 
-def _points(position: Any, resolution: float) -> Points:
+def _counted(steps: Any, resolution: float) -> bool:
+    """True if almost all steps are multiples of the resolution."""
+    import numpy as np
+
+    if not len(steps):
+        return False
+    fractions = np.abs(steps / resolution - np.round(steps / resolution))
+    return bool((fractions < 0.05).mean() > 0.9)
+
+
+def _longest(position: Any, breaks: set[int], stops: list[tuple[int, int]]) -> tuple[int, int]:
+    """The part with the longest path that has no break and no time at an end stop; the whole if there is none."""
+    edges = sorted({0, len(position), *breaks, *(edge for stop in stops for edge in stop)})
+    parts = [(a, b) for a, b in pairwise(edges) if not any(begin <= a < end for begin, end in stops)]
+    return max(parts, key=lambda part: _worth(position[part[0] : part[1]]), default=(0, len(position)))
+
+
+def _points(position: Any, resolution: float) -> SamplePairs:
     import numpy as np
 
     moved = np.nonzero(np.abs(np.diff(position)) > 0.5 * resolution)[0] + 1
@@ -132,7 +146,7 @@ def _points(position: Any, resolution: float) -> Points:
     first = np.array([*(moved - 1), *rests], dtype=int)
     order = np.argsort(first, kind="stable")
     second = np.array([*moved, *rests], dtype=int)
-    return Points(first[order], second[order])
+    return SamplePairs(first[order], second[order])
 
 
 def _resolution(steps: Any) -> float:

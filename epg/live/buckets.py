@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from epg.live.rows import Row
+from epg.runs.recording import Row
 
 
 class Bucket(NamedTuple):
@@ -59,11 +59,6 @@ class Buckets:
         """The pieces that are finished, each once."""
         finished, self._finished = self._finished, []
         return finished
-
-    def close(self) -> None:
-        """Finishes the last piece."""
-        self._finish()
-        self._number = -1
 
     def _finish(self) -> None:
         if self._number >= 0:

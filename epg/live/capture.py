@@ -2,9 +2,10 @@
 """Recordings of every control cycle, which the target makes in its memory around a trigger (the command ``capture``).
 
 >>> progress_of("ok capture state=ready rows=200 trigger=50")
-Progress(recording=False, rows=200, trigger=50)
->>> recorded_of(["csv time,outputs.a", "csv 7.5,1", "csv 7.75,2", "ok capture"], 1)
-Recorded(names=('outputs.a',), rows=[Row(time=-0.25, values=[1.0]), Row(time=0.0, values=[2.0])], triggered=True)
+CaptureProgress(recording=False, rows=200, trigger=50)
+>>> found = recorded_of(["csv time,outputs.a", "csv 7.5,1", "csv 7.75,2", "ok capture"], 1)
+>>> found.names, [(row.time, row.values) for row in found.rows]
+(('outputs.a',), [(-0.25, [1.0]), (0.0, [2.0])])
 """
 
 from __future__ import annotations
@@ -13,10 +14,10 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from epg.live.client import words_of
-from epg.live.rows import Row
+from epg.runs.recording import Row
 
 
-class Progress(NamedTuple):
+class CaptureProgress(NamedTuple):
     """The progress of a recording.  ``trigger`` is the row of the trigger; None: it has not happened."""
 
     recording: bool
@@ -24,7 +25,7 @@ class Progress(NamedTuple):
     trigger: int | None
 
 
-class Recorded(NamedTuple):
+class Capture(NamedTuple):
     """A recording.  Its time 0 is the trigger; without one, the first row."""
 
     names: tuple[str, ...]
@@ -32,17 +33,19 @@ class Recorded(NamedTuple):
     triggered: bool
 
 
-def progress_of(line: str) -> Progress:
+def progress_of(line: str) -> CaptureProgress:
     """The progress in the answer of the command ``capture``."""
     words = dict(words_of(line))
     trigger = words.get("trigger")
-    return Progress(words["state"] == "recording", int(words["rows"]), int(trigger) if trigger is not None else None)
+    return CaptureProgress(
+        words["state"] == "recording", int(words["rows"]), int(trigger) if trigger is not None else None
+    )
 
 
-def recorded_of(lines: Sequence[str], trigger: int | None) -> Recorded:
+def recorded_of(lines: Sequence[str], trigger: int | None) -> Capture:
     """The recording in the answer of the command ``capture read``."""
     header, *rows = (line.removeprefix("csv ").split(",") for line in lines if line.startswith("csv "))
     numbers = [[float(text) for text in row] for row in rows]
     begin = numbers[trigger or 0][0] if numbers else 0.0
     found = [Row(round(time - begin, 9), values) for time, *values in numbers]
-    return Recorded(tuple(header[1:]), found, trigger is not None)
+    return Capture(tuple(header[1:]), found, trigger is not None)

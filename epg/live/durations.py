@@ -16,7 +16,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from epg.live.rows import Row
+from epg.runs.recording import Row
 
 BINS = 4
 """Bins per octave."""
@@ -63,6 +63,3 @@ class Durations:
                 for column, histogram in zip(self._columns, self.histograms, strict=True):
                     histogram.add(row.values[column])
             self._begun = True
-
-    def close(self) -> None:
-        """Nothing has to be closed."""

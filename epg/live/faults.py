@@ -16,11 +16,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from epg.catalog.catalog import load_catalog
-from epg.data import data_folder, targets_roots
-from epg.diagnostics import Diagnostics
-from epg.documents.items import text_of
-from epg.documents.yaml_file import load_yaml
+from epg.generator.catalog.catalog import load_catalog
+from epg.generator.data import data_folder, targets_roots
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.items import text_of
+from epg.generator.documents.yaml_file import load_yaml
 
 FILE = data_folder("targets") / "runtime" / "faults.yaml"
 
@@ -52,7 +52,11 @@ class Faults:
         description, remedy = self._words.get(name, ("", ""))
         component = f" of {state['component']}" if state.get("component") else ""
         text = f"Fault '{name}'{component}{f': {description}' if description else ''}."
-        return Fault(text, _sentence(remedy or "look at the component, and enable the target again"))
+        remedy = remedy or "look at the component, and enable the target again"
+        if setpoint := state.get("setpoint"):
+            text += f" The setpoint {setpoint} is at its limit."
+            remedy = f"send another setpoint, which does not press the axis against its end stop; otherwise {remedy}"
+        return Fault(text, _sentence(remedy))
 
     def _load(self) -> dict[str, tuple[str, str]]:
         catalog = load_catalog([root for root in self._roots if root.is_dir()], Diagnostics())

@@ -12,8 +12,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-from epg.live.client import Client, Description, Lost, Refused
-from epg.live.port import Port, PortError, program_with
+from epg.live.client import Client, CommandRefused, Lost, TargetDescription
+from epg.live.port import PortError, SerialPort, program_with
 
 _BY_ID = Path("/dev/serial/by-id")
 _PATTERNS = ("ttyACM*", "ttyUSB*", "cu.usb*")
@@ -29,7 +29,7 @@ class Found:
 
     path: Path
     device: str
-    target: Description | None
+    target: TargetDescription | None
     reason: str
 
 
@@ -57,13 +57,13 @@ def look_at(path: Path, device: str = "") -> Found:
     if user:
         return Found(path, device, None, f"in use by {user}")
     try:
-        with Port(path) as port:
+        with SerialPort(path) as port:
             client = Client(port, tries=1, patience=0.7)  # a silent port takes twice this time
             try:
                 return Found(path, device, client.description, "")
             finally:
                 client.stop()
-    except (PortError, Lost, Refused) as problem:
+    except (PortError, Lost, CommandRefused) as problem:
         return Found(path, device, None, str(problem))
 
 

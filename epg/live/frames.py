@@ -56,25 +56,25 @@ class Decoder:
 
     def feed(self, data: bytes) -> list[bytes | str]:
         """The messages and lines that are complete with ``data``, in their order."""
-        found: list[bytes | str] = []
+        messages: list[bytes | str] = []
         *parts, self._bytes = (self._bytes + data).split(b"\0")
         for part in parts:
             message = decode(part) if self._after_zero and part else None
             if message is not None:
-                found.append(message)
+                messages.append(message)
             elif part and not self._after_zero:
-                found += _lines(part)
+                messages += _lines(part)
             elif part:
                 self.damaged += 1
             self._after_zero = message is None
         if not self._after_zero and b"\n" in self._bytes:
             whole, _, self._bytes = self._bytes.rpartition(b"\n")
-            found += _lines(whole)
+            messages += _lines(whole)
         if len(self._bytes) > LONGEST:
             self._bytes = b""
             self._after_zero = False
             self.damaged += 1
-        return found
+        return messages
 
 
 def _lines(data: bytes) -> list[str]:

@@ -5,13 +5,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from epg.live.port import BAUD, Port
+from epg.live.port import BAUD, SerialPort
 from epg.live.udp import UdpPort, is_udp
 
 
-def open_port(path: Path, baud: int = BAUD) -> Port | UdpPort:
+def open_port(path: Path, baud: int = BAUD) -> SerialPort | UdpPort:
     """The open port.
 
     :raises PortError: it cannot be used
     """
-    return UdpPort(path) if is_udp(path) else Port(path, baud)
+    return UdpPort(path) if is_udp(path) else SerialPort(path, baud)

@@ -13,7 +13,6 @@ import select
 import stat
 import sys
 from pathlib import Path
-from types import TracebackType
 
 with contextlib.suppress(ImportError):  # Windows does not have them, and `epg connect` must work there
     import fcntl
@@ -31,7 +30,7 @@ class PortError(Exception):
         self.hint = hint
 
 
-class Port:
+class SerialPort:
     """An open serial port or terminal, without echo and without a change of any byte.
 
     :raises PortError: it does not exist, another program has it, or it is no terminal
@@ -110,12 +109,10 @@ class Port:
     def _gone(self) -> PortError:
         return PortError(f"{self.path} is gone", "look at the cable and at the program, and connect again")
 
-    def __enter__(self) -> Port:
+    def __enter__(self) -> SerialPort:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
 

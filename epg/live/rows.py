@@ -9,26 +9,24 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
+import time
 from array import array
 from collections import deque
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import NamedTuple, Protocol, TextIO
+from typing import Protocol, TextIO
 
-from epg.live.client import Client, Refused, Rows
+from epg.live.client import Client, CommandRefused, Rows
+from epg.runs.recording import Row
 
-__all__ = ["CsvFile", "JsonLines", "McapFile", "Recording", "Row", "Sink", "Stream", "array"]
+__all__ = ["File", "JsonLines", "Named", "Recorder", "Sink", "Stream", "array"]
 
 _MODULO = 1 << 32
 
-
-class Row(NamedTuple):
-    """A row: its time in seconds since the first row, one value per signal, and its number.  Dropped rows count."""
-
-    time: float
-    values: Sequence[float]
-    number: int = 0
+FLUSH = 0.5
+"""Seconds; a file loses no more if this program is killed."""
 
 
 class Stream:
@@ -62,25 +60,41 @@ class Sink(Protocol):
     """Keeps rows."""
 
     def write(self, rows: Iterable[Row]) -> None: ...
+
+
+class File(Sink, Protocol):
+    """Keeps rows in a file.  Those before :meth:`flush` stay if this program is killed."""
+
+    def flush(self) -> None: ...
     def close(self) -> None: ...
 
 
-class CsvFile:
-    """A CSV file: a column of times in seconds, and one column per signal."""
+class Named:
+    """A file of rows whose errors name it."""
 
-    def __init__(self, path: Path, names: Sequence[str]) -> None:
-        self._file = path.open("w", encoding="utf-8", newline="\n")
-        self._file.write(",".join(("time", *names)) + "\n")
+    def __init__(self, path: Path, make: Callable[[], File]) -> None:
+        self._path = path
+        with self._naming():
+            self._file = make()
 
     def write(self, rows: Iterable[Row]) -> None:
-        self._file.writelines(_csv(row) for row in rows)
+        with self._naming():
+            self._file.write(rows)
+
+    def flush(self) -> None:
+        with self._naming():
+            self._file.flush()
 
     def close(self) -> None:
-        self._file.close()
+        with self._naming():
+            self._file.close()
 
-
-def _csv(row: Row) -> str:
-    return f"{row.time:.6f}," + ",".join(f"{value:.9g}" for value in row.values) + "\n"
+    @contextlib.contextmanager
+    def _naming(self) -> Iterator[None]:
+        try:
+            yield
+        except OSError as error:
+            raise OSError(error.errno, error.strerror, str(self._path)) from error
 
 
 class JsonLines:
@@ -95,43 +109,16 @@ class JsonLines:
             self._file.write(json.dumps({"time": round(row.time, 6), "values": values}) + "\n")
         self._file.flush()
 
-    def close(self) -> None:
-        self._file.flush()
 
+class Recorder:
+    """Keeps the rows that arrive until :meth:`drain` writes them into the sinks, in the thread that calls it.
 
-class McapFile:
-    """An MCAP file with one JSON message per row.  The first row has the time ``begin``, in ns since 1970."""
+    Those of the sinks that are ``files`` are flushed every :data:`FLUSH` seconds.
+    """
 
-    def __init__(self, path: Path, names: Sequence[str], topic: str, begin: int) -> None:
-        from mcap.writer import Writer
-
-        from epg import __version__
-
-        self._stream = path.open("wb")
-        self._writer = Writer(self._stream)
-        self._writer.start(profile="", library=f"epg {__version__}")
-        properties = {name: {"type": "number"} for name in names}
-        schema = json.dumps({"type": "object", "properties": properties}).encode()
-        number = self._writer.register_schema("epg.signals", "jsonschema", schema)
-        self._channel = self._writer.register_channel(topic, "json", number)
-        self._names, self._begin = names, begin
-
-    def write(self, rows: Iterable[Row]) -> None:
-        for row in rows:
-            data = json.dumps(dict(zip(self._names, map(float, row.values), strict=True))).encode()
-            time = self._begin + round(row.time * 1e9)
-            self._writer.add_message(self._channel, time, data, time)
-
-    def close(self) -> None:
-        self._writer.finish()
-        self._stream.close()
-
-
-class Recording:
-    """Keeps the rows that arrive until :meth:`drain` writes them into the sinks, in the thread that calls it."""
-
-    def __init__(self, stream: Stream, sinks: Sequence[Sink]) -> None:
-        self.stream, self._sinks = stream, sinks
+    def __init__(self, stream: Stream, sinks: Sequence[Sink], files: Sequence[File] = ()) -> None:
+        self.stream, self._sinks, self._files = stream, sinks, files
+        self._flush_at = time.monotonic() + FLUSH
         self._arrived: deque[Rows] = deque()
 
     def start(self, client: Client, signals: Sequence[int], every: int, *, exact: bool = False) -> int:
@@ -146,7 +133,7 @@ class Recording:
             self.stream.period = client.description.period * every
             try:
                 client.start_stream(signals, every, self._arrived.append, exact=exact)
-            except Refused as refusal:
+            except CommandRefused as refusal:
                 words = str(refusal).split(" ")
                 if (
                     words[0] != "needs" or exact
@@ -165,3 +152,7 @@ class Recording:
         rows = [row for _ in range(len(self._arrived)) for row in self.stream.take(self._arrived.popleft())]
         for sink in self._sinks if rows else ():
             sink.write(rows)
+        if self._files and time.monotonic() >= self._flush_at:
+            for file in self._files:
+                file.flush()
+            self._flush_at = time.monotonic() + FLUSH

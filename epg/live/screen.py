@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import select
 import shutil
@@ -13,17 +14,20 @@ import threading
 import time
 import tty
 from collections import deque
-from collections.abc import Iterable
-from types import TracebackType
+from collections.abc import Callable, Iterable
 
-from epg.live.client import Client, Lost, Refused, words_of
+from epg.live.client import Client, CommandRefused, Lost
+from epg.live.enabling import CONFIRM, send
 from epg.live.faults import Faults
-from epg.live.rows import Recording, Row
+from epg.live.rows import Recorder
+from epg.runs.recording import Row
 
 PERIOD = 0.1
 """Seconds between two pictures."""
 ANSWER = 0.02
 """Seconds between two looks at the keyboard and at the numbers of a lease."""
+OLD = 1.0
+"""Seconds without news after which the values are old."""
 LINES = 8
 """Lines of answers on the screen."""
 _BARS = "▁▂▃▄▅▆▇█"
@@ -43,9 +47,6 @@ class Values:
         for row in rows:
             for values, value in zip(self._new, row.values, strict=True):
                 values.append(value)
-
-    def close(self) -> None:
-        """Nothing has to be closed."""
 
     def picture(self) -> None:
         """Takes the values since the last picture.  Of them, the history keeps the one farthest from the last one."""
@@ -78,22 +79,20 @@ class Screen:
     come back only while this loop runs.
     """
 
-    def __init__(self, client: Client, names: list[str], values: Values, recording: Recording, faults: Faults) -> None:
+    def __init__(self, client: Client, names: list[str], values: Values, recording: Recorder, faults: Faults) -> None:
         self._client, self._names, self._values, self._recording = client, names, values, recording
         units = {signal.name: signal.unit for signal in client.description.streamed}
         self._units = [units[name] for name in names]
         self._line = ""
         self._said: deque[str] = deque(maxlen=LINES)
         self._numbers: deque[int] = deque()
-        self._state = ""
+        self._shown: dict[str, str] = {}  # the words of the state on the screen
+        self._unconfirmed = ""  # a line that the person must confirm
         self._faults = faults
-        self._stopping = False
         self.over = False
 
     def told(self, line: str) -> None:
         """Takes a line that answers no command."""
-        if line.startswith("state "):
-            self._state = line.removeprefix("state ")
         self._said.append(line)
         self.over = self.over or line.startswith("lost ")
 
@@ -101,12 +100,22 @@ class Screen:
         """Takes a number of a lease."""
         self._numbers.append(number)
 
-    def run(self, end: float) -> None:
-        """Shows the screen until Ctrl-C, until the connection is lost, or until the monotonic time ``end``."""
-        self._ask("stats")
+    def run(self, end: float, stopped: Callable[[], bool] = lambda: False) -> None:
+        """Shows the screen until Ctrl-C, until ``stopped()``, or until the connection or the terminal is lost.
+
+        Ends at the monotonic time ``end``, too.
+        """
+        try:
+            self._run(end, stopped)
+            sys.stdout.write("\n")
+        except (OSError, termios.error) as error:
+            if error.args[0] != errno.EIO or getattr(error, "filename", None):
+                raise  # not that the terminal has closed
+
+    def _run(self, end: float, stopped: Callable[[], bool]) -> None:
         due = 0.0
         with _Keyboard() as keyboard:
-            while not self.over and time.monotonic() < end:
+            while not self.over and not stopped() and time.monotonic() < end:
                 while self._numbers:
                     self._client.respond(self._numbers.popleft())
                 self._recording.drain()
@@ -116,7 +125,6 @@ class Screen:
                     due = time.monotonic() + PERIOD
                     self._values.picture()
                     self._draw()
-        sys.stdout.write("\n")
 
     def _press(self, key: str) -> None:
         if key in _END:
@@ -126,38 +134,53 @@ class Screen:
         elif key in "\r\n":
             line, self._line = self._line.strip(), ""
             if line:
-                self._ask("enable leased" if line == "enable" else line)
+                self._enter(line)
         elif key in "\x08\x7f":
             self._line = self._line[:-1]
         elif key.isprintable():
             self._line += key
 
+    def _enter(self, line: str) -> None:
+        """Sends a line, but asks before it enables without a lease."""
+        waits, self._unconfirmed = self._unconfirmed, ""
+        if waits:
+            self._ask(waits) if line == "yes" else self._said.append("not enabled")
+        elif line.split()[:2] == ["enable", "unattended"]:
+            self._unconfirmed = line
+            self._said.append(f"{CONFIRM}: type yes")
+        else:
+            self._ask(line)
+
     def _ask(self, line: str) -> None:
         """Sends a command, and shows its answer when it comes."""
-        threading.Thread(target=self._answer, args=(line,), daemon=True).start()
+        threading.Thread(target=self._answer, args=(line, self._shown.get("stop", "")), daemon=True).start()
 
-    def _answer(self, line: str) -> None:
+    def _answer(self, line: str, after: str) -> None:
         try:
             if line == "disable":
                 self._client.disable()
                 self._said.append("ok disable")
                 return
-            lines = self._client.command(line)
-            if line == "stats":
-                self._state = lines[0].removeprefix("stat ")
-                lines = lines[-1:]
-            self._said.extend(lines)
-        except Refused as refusal:
+            self._said.extend(send(self._client, line, after))
+        except CommandRefused as refusal:
             self._said.append(f"error {line.split(' ')[0]} {refusal}")
         except (Lost, UnicodeEncodeError) as problem:
             self._said.append(str(problem))
+
+    def _state(self) -> str:
+        """The state, and its age if there is no news."""
+        state = " ".join(f"{name}={value}" for name, value in self._shown.items())
+        if self._shown.get("enabled") == "1" and "leased" not in self._shown:
+            state = f"UNATTENDED {state}"
+        return f"VALUES ARE OLD: no news for {self._client.age:.0f} s  {state}" if self._client.age > OLD else state
 
     def _draw(self) -> None:
         columns, height = shutil.get_terminal_size()
         description = self._client.description
         width = max(map(len, self._names), default=0)
-        fault = self._faults.explain(dict(words_of(self._state)))
-        lines = [f"{description.name}  EPG {description.version}  {self._state}"]
+        self._shown = self._client.state
+        fault = self._faults.explain(self._shown)
+        lines = [f"{description.name}  EPG {description.version}  {self._state()}"]
         lines += [line for text in fault or () for line in textwrap.wrap(text, columns)] + [""]
         room = height - len(lines) - LINES - 4
         for index, name in enumerate(self._names[: max(room, 1)]):
@@ -187,7 +210,5 @@ class _Keyboard:
             return ""
         return os.read(self._file, 1024).decode("utf-8", "ignore") or "\x04"
 
-    def __exit__(
-        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         termios.tcsetattr(self._file, termios.TCSADRAIN, self._before)

@@ -2,7 +2,8 @@
 """The console of a program on another computer, by UDP: a port like a serial one, over datagrams that can be lost.
 
 A datagram is a header and whole frames.  Commands are sent again until the target has them; their numbers let each act
-once.  The target does the same with lines of answers.  ``docs/live.md`` describes the datagrams.
+once.  The target does the same with lines of answers.  ``docs/live-protocol.md`` describes the datagrams.  If this
+user has given a key for the port, all datagrams are sealed, and others do not count.
 
 >>> parse("udp:192.168.1.10:7000"), parse("udp:[::1]:7000"), parse("udp:7000")
 (('192.168.1.10', 7000), ('::1', 7000), ('127.0.0.1', 7000))
@@ -20,10 +21,12 @@ import threading
 import time
 from dataclasses import dataclass
 from pathlib import PurePath
-from types import TracebackType
+from typing import NamedTuple
 
 from epg.live.frames import decode, encode
 from epg.live.port import PortError
+from epg.live.udp_keys import file_of, kept_key
+from epg.live.udp_seal import Seal
 
 PREFIX = "udp:"
 AGAIN = 0.05
@@ -38,13 +41,17 @@ BUFFER = 4 << 20
 _HEADER = struct.Struct("<4sBIIII")
 _MAGIC = b"\x01EPG"
 _BEGIN, _END, _DISABLE = 1, 2, 4
-_RUNNING, _OVER, _DISABLED, _TAKEN, _ONCE = 1, 2, 4, 8, 16
+_RUNNING, _OVER, _DISABLED, _TAKEN, _ONCE, _LOCKED = 1, 2, 4, 8, 16, 64
 _BITS = 32
 _MODULO = 1 << 32
 
 
 class PortTaken(PortError):
     """Another program uses the target."""
+
+
+class PortLocked(PortError):
+    """The target needs a key, or another one."""
 
 
 def is_udp(path: PurePath) -> bool:
@@ -57,12 +64,22 @@ def parse(name: str) -> tuple[str, int]:
 
     :raises PortError: it does not have this form
     """
-    found = re.fullmatch(r"udp:(?:(?:\[([^\]]+)\]|([^:/\[\]]+)):)?(\d{1,5})", name, re.ASCII)
-    if found is None or not 0 < int(found[3]) < 65536:
+    match = re.fullmatch(r"udp:(?:(?:\[([^\]]+)\]|([^:/\[\]]+)):)?(\d{1,5})", name, re.ASCII)
+    if match is None or not 0 < int(match[3]) < 65536:
         raise PortError(
             f"'{name}' is not udp:HOST:PORT", "for example udp:192.168.1.10:7000, udp:[::1]:7000 or udp:robot:7000"
         )
-    return found[1] or found[2] or "127.0.0.1", int(found[3])
+    return match[1] or match[2] or "127.0.0.1", int(match[3])
+
+
+class _Datagram(NamedTuple):
+    """A datagram of the target.  ``newest`` is the newest command that it has, ``seen`` a bit for each earlier one."""
+
+    flags: int
+    number: int
+    newest: int
+    seen: int
+    body: bytes
 
 
 @dataclass
@@ -79,11 +96,14 @@ class UdpPort:
     """An open connection with a target.
 
     :raises PortTaken: another program uses the target
+    :raises PortLocked: it needs the key that its program has printed
     :raises PortError: the target does not answer
     """
 
     def __init__(self, path: PurePath) -> None:
         self.path = path
+        key = kept_key(path)
+        self._seal = Seal(key) if key is not None else None
         self._socket = _connected(str(path))
         self._session = _session()
         self._lock = threading.Lock()
@@ -96,6 +116,7 @@ class UdpPort:
         self._arrived: list[bytes] = []
         self._running = False
         self._taken = ""
+        self._locked = False
         try:
             self._begin()
         except BaseException:
@@ -144,7 +165,7 @@ class UdpPort:
 
     def close(self) -> None:
         """Leaves the target to others."""
-        with contextlib.suppress(OSError, PortError):
+        with contextlib.suppress(OSError, PortError), self._lock:
             for _ in range(3):  # one of them arrives, as a rule; if not, the target notices the silence
                 self._send(_END, 0, b"")
         self._socket.close()
@@ -152,37 +173,39 @@ class UdpPort:
     def __enter__(self) -> UdpPort:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def _begin(self) -> None:
         """Asks for the target until it answers."""
         begin = self._heard = time.monotonic()
         while not self._running:
+            if self._locked and self._seal is None:
+                raise _locked(self.path, "needs a key")
             if time.monotonic() > begin + GONE:
+                if self._locked:  # it did not answer in another way, so the key is wrong
+                    raise _locked(self.path, "has another key than the one that was given")
                 if self._taken:
                     raise PortTaken(
                         f"another program has {self.path}: {self._taken}",
                         f"end it; 'epg live {self.path} --send disable' disables the target all the same",
                     )
-                raise PortError(
-                    f"nothing answers at {self.path}",
-                    "look at the address and the firewall; a program listens with --console-udp",
-                )
+                hint = "look at the address and the firewall; a program listens with --console-udp"
+                if self._seal is not None:
+                    hint += f"; if the program has no key any more, remove {file_of(self.path)}"
+                raise PortError(f"nothing answers at {self.path}", hint)
             self._send(_BEGIN, 0, b"")
             select.select([self._socket], [], [], AGAIN)
             self._receive()
-            if self._taken and not self._running:
+            if (self._taken or self._locked) and not self._running:
                 time.sleep(AGAIN)
 
     def _send(self, flags: int, number: int, body: bytes) -> None:
         """Sends a datagram.  One that the system cannot take is lost, as others are."""
-        header = _HEADER.pack(_MAGIC, flags, self._session, number, self._line, self._lowest)
+        data = _HEADER.pack(_MAGIC, flags, self._session, number, self._line, self._lowest) + body
         self._confirm = False
         try:
-            self._socket.send(header + body)
+            self._socket.send(self._seal.close(data) if self._seal is not None else data)
         except ConnectionRefusedError as error:
             raise self._gone() from error
         except OSError:
@@ -227,54 +250,99 @@ class UdpPort:
                 self._take(data)
 
     def _take(self, data: bytes) -> None:
-        if len(data) < _HEADER.size:
-            return
-        magic, flags, session, number, newest, seen = _HEADER.unpack_from(data)
-        if magic != _MAGIC or session != self._session:
+        self._locked = self._locked or _flags(data, self._session) == _LOCKED
+        if self._seal is not None:
+            opened = self._seal.open(data)
+            if opened is None:
+                return
+            data = opened
+        taken = _parsed(data, self._session)
+        if taken is None:
             return
         self._heard = time.monotonic()
-        body = data[_HEADER.size :]
-        if flags & _TAKEN:
-            self._taken = body.decode("ascii", "replace")
-        if flags & _OVER:
+        if taken.flags & _TAKEN:
+            self._taken = taken.body.decode("ascii", "replace")
+        if taken.flags & _OVER:
             raise PortError(f"the program has closed {self.path}", "connect again")
-        if not flags & _RUNNING:
+        if not taken.flags & _RUNNING:
             return
         self._running = True
+        if self._seal is not None:
+            self._seal.settled = True
+        self._drop_confirmed(taken.newest, taken.seen)
+        self._take_frames(taken)
+
+    def _drop_confirmed(self, newest: int, seen: int) -> None:
+        """Drops the commands that the target has."""
         for sent in list(self._commands):
             if sent == newest or (0 < newest - sent <= _BITS and seen >> (newest - sent - 1) & 1):
                 del self._commands[sent]
-        frames = [b"\0" + part + b"\0" for part in body.split(b"\0") if part]
-        if flags & _ONCE:
-            if number > self._once:
-                self._once = number
+
+    def _take_frames(self, taken: _Datagram) -> None:
+        """Takes the frames that have not arrived before."""
+        frames = [b"\0" + part + b"\0" for part in taken.body.split(b"\0") if part]
+        if taken.flags & _ONCE:
+            if taken.number > self._once:
+                self._once = taken.number
                 self._arrived += frames
         elif frames:
             self._confirm = True
-            fresh = (self._line - number) % _MODULO
+            fresh = (self._line - taken.number) % _MODULO
             if fresh < len(frames):
                 self._arrived += frames[fresh:]
                 self._line += len(frames) - fresh
 
 
 def disable(path: PurePath) -> None:
-    """Disables the target, also while another program uses it.
+    """Disables the target, also while another program uses it.  The answer says that the target has taken the stop.
 
-    :raises PortError: the target does not answer
+    :raises PortError: the target does not answer, or its answer does not prove that it has the key
     """
     session = _session()
+    key = kept_key(path)
+    seal = Seal(key) if key is not None else None
     end = time.monotonic() + GONE
+    unproven = False
     with _connected(str(path)) as connected:
         while time.monotonic() < end:
             with contextlib.suppress(OSError):
-                connected.send(_HEADER.pack(_MAGIC, _DISABLE, session, 0, 0, 0))
+                data = _HEADER.pack(_MAGIC, _DISABLE, session, 0, 0, 0)
+                connected.send(seal.close(data) if seal is not None else data)
                 if select.select([connected], [], [], AGAIN)[0]:
-                    data = connected.recv(65536)
-                    if len(data) >= _HEADER.size:
-                        magic, flags, answered = _HEADER.unpack_from(data)[:3]
-                        if magic == _MAGIC and answered == session and flags & _DISABLED:
-                            return
+                    answer: bytes | None = connected.recv(65536)
+                    if seal is not None and answer is not None:
+                        answer = seal.open(answer)
+                        unproven = unproven or answer is None
+                    if answer is not None and _flags(answer, session) & _DISABLED:
+                        return
+    if unproven:
+        message = f"something answers at {path}, but not with the key that was given for it"
+        raise PortError(f"'disable' was sent; {message}", "look at the robot; switch the actuators' supply off")
     raise PortError(f"nothing answers at {path}", "switch the actuators' supply off")
+
+
+def _parsed(data: bytes, session: int) -> _Datagram | None:
+    """A datagram without a seal; None if it is not of this session."""
+    if len(data) < _HEADER.size:
+        return None
+    magic, flags, answered, number, newest, seen = _HEADER.unpack_from(data)
+    if magic != _MAGIC or answered != session:
+        return None
+    return _Datagram(flags, number, newest, seen, data[_HEADER.size :])
+
+
+def _flags(data: bytes, session: int) -> int:
+    """The flags of a datagram without a seal; 0 if it is not of this session."""
+    frame = _parsed(data, session)
+    return frame.flags if frame is not None else 0
+
+
+def _locked(path: PurePath, problem: str) -> PortLocked:
+    return PortLocked(
+        f"{path} {problem}",
+        f"its program has printed the key, or has it from --console-key FILE: 'epg live {path}' asks for it in a "
+        "terminal, and --key FILE reads it",
+    )
 
 
 def _connected(name: str) -> socket.socket:

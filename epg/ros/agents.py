@@ -13,10 +13,10 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import field
 
-from epg.dataclass import dataclass
-from epg.diagnostics import Diagnostics, did_you_mean
-from epg.ros.robot import HOST_SERIAL, PICO_DIGITS, Robot
-from epg.source import Span
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostics, did_you_mean
+from epg.generator.source import Span
+from epg.runs.robot import HOST_SERIAL, PICO_DIGITS, Robot
 
 AGENT_MIDDLEWARES = ("xrce", "micro_ros")
 DEFAULT_BAUD_RATE = 115200
@@ -45,7 +45,7 @@ class Agent:
 
 
 @dataclass(frozen=True)
-class Wiring:
+class AgentSetup:
     """Facts that are not in a description: serial numbers of boards, and ttys, by name of the target; the UDP port.
 
     ``programs`` are the host programs of targets, which the launch file starts.
@@ -70,32 +70,19 @@ def check_target_names(
                 diagnostics.error("unknown-target-name", span, f"there is no target '{name}'", hint=hint)
 
 
-def plan_agents(robots: Sequence[Robot], wiring: Wiring, diagnostics: Diagnostics) -> list[Agent]:
+def plan_agents(robots: Sequence[Robot], setup: AgentSetup, diagnostics: Diagnostics) -> list[Agent]:
     """The agents that ``robots`` need, in the order of the robots.  The agent for UDP is the last one."""
-    for name, count in Counter(robot.name for robot in robots).items():
-        if count > 1:
-            files = ", ".join(str(robot.file) for robot in robots if robot.name == name)
-            diagnostics.error("duplicate-target-name", Span(files), f"{count} targets have the name '{name}'")
-    diagnostics.stop_if_errors()
+    _refuse_equal_names(robots, diagnostics)
     agents: list[Agent] = []
     by_udp: list[Robot] = []
     for robot in robots:
-        if robot.middleware not in AGENT_MIDDLEWARES and robot.name in wiring.programs:
-            continue
         if robot.middleware not in AGENT_MIDDLEWARES:
-            why = (
-                "its middleware 'dds' does not use one"
-                if robot.middleware == "dds"
-                else f"its middleware is '{robot.middleware}'"
-            )
-            hint = f"add --program {robot.name}=<path>: the launch file then starts its program"
-            hint = hint if robot.platform == "host" else ""
-            message = f"'{robot.name}' needs no agent: {why}"
-            diagnostics.warning("no-agent-needed", Span(str(robot.file)), message, hint=hint)
-        elif robot.name in wiring.devices:
-            agents += [_on_device(robot, device, diagnostics) for device in wiring.devices[robot.name]]
+            if robot.name not in setup.programs:
+                _warn_of_no_agent(robot, diagnostics)
+        elif robot.name in setup.devices:
+            agents += [_on_device(robot, device, diagnostics) for device in setup.devices[robot.name]]
         elif robot.transport == "usb":
-            agents += _on_usb(robot, wiring.boards.get(robot.name, ()), diagnostics)
+            agents += _on_usb(robot, setup.boards.get(robot.name, ()), diagnostics)
         elif robot.transport == "udp":
             by_udp.append(robot)
         else:
@@ -103,15 +90,30 @@ def plan_agents(robots: Sequence[Robot], wiring: Wiring, diagnostics: Diagnostic
             hint = f"name it, for example --device {robot.name}=/dev/ttyAMA0:921600"
             diagnostics.error("device-missing", Span(str(robot.file)), message, hint=hint)
     if by_udp:
-        port = str(wiring.port)
+        port = str(setup.port)
         agents.append(Agent(f"agent_udp_{port}", ("udp4", "-p", port), None, None, tuple(by_udp)))
     _refuse_one_device_twice(agents, diagnostics)
-    served = [robot for agent in agents for robot in agent.serves if robot.name not in wiring.programs]
-    started = [robot.with_serial(HOST_SERIAL) for robot in robots for _ in wiring.programs.get(robot.name, ())]
-    _warn_of_equal_nodes(served, started, diagnostics)
-    if not agents and not wiring.programs and not diagnostics.has_errors:
+    _warn_of_equal_nodes(robots, agents, setup, diagnostics)
+    if not agents and not setup.programs and not diagnostics.has_errors:
         diagnostics.error("nothing-to-launch", Span("command line"), "none of these targets needs an agent")
     return agents
+
+
+def _refuse_equal_names(robots: Sequence[Robot], diagnostics: Diagnostics) -> None:
+    for name, count in Counter(robot.name for robot in robots).items():
+        if count > 1:
+            files = ", ".join(str(robot.file) for robot in robots if robot.name == name)
+            diagnostics.error("duplicate-target-name", Span(files), f"{count} targets have the name '{name}'")
+    diagnostics.stop_if_errors()
+
+
+def _warn_of_no_agent(robot: Robot, diagnostics: Diagnostics) -> None:
+    dds = robot.middleware == "dds"
+    why = "its middleware 'dds' does not use one" if dds else f"its middleware is '{robot.middleware}'"
+    hint = f"add --program {robot.name}=<path>: the launch file then starts its program"
+    hint = hint if robot.platform == "host" else ""
+    message = f"'{robot.name}' needs no agent: {why}"
+    diagnostics.warning("no-agent-needed", Span(str(robot.file)), message, hint=hint)
 
 
 def _on_usb(robot: Robot, serials: Sequence[str], diagnostics: Diagnostics) -> list[Agent]:
@@ -179,17 +181,21 @@ def _refuse_one_device_twice(agents: Sequence[Agent], diagnostics: Diagnostics) 
             )
 
 
-def _warn_of_equal_nodes(served: Sequence[Robot], started: Sequence[Robot], diagnostics: Diagnostics) -> None:
+def _warn_of_equal_nodes(
+    robots: Sequence[Robot], agents: Sequence[Agent], setup: AgentSetup, diagnostics: Diagnostics
+) -> None:
     """Warns of robots whose nodes have the same name.
 
-    They would receive the same setpoints, and a subscriber could not distinguish their positions.  The boards
-    ``served`` have different serial numbers; the programs ``started`` do not.
+    They would receive the same setpoints, and a subscriber could not distinguish their positions.  The boards that
+    the agents serve have different serial numbers; the programs that the launch file starts do not.
     """
-    nodes = Counter(robot.full_node for robot in [*(r for r in served if not r.has_serial_in_names), *started])
+    boards = [robot for agent in agents for robot in agent.serves if robot.name not in setup.programs]
+    started = [robot.with_serial(HOST_SERIAL) for robot in robots for _ in setup.programs.get(robot.name, ())]
+    nodes = Counter(robot.full_node for robot in [*boards, *started] if not robot.has_serial_in_names)
     for node, count in nodes.items():
         if count > 1:
             message = f"{count} robots have the same node '{node}' and therefore the same topics"
             hint = "write namespace: robot_$serial in the .tcf, or set a different name on each console"
-            if any(robot.full_node == node for robot in started):
+            if node in {robot.full_node for robot in started}:
                 hint = "launch each program in its own namespace: the launch file has an argument for each"
             diagnostics.warning("equal-nodes", Span("command line"), message, hint=hint)

@@ -13,13 +13,13 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
 from epg.ros.dds_types import dds_type
-from epg.ros.source import Sample, Subscription
+from epg.ros.message_source import Sample, Subscription
 
 _TAKE = 256  # the largest number of samples that are taken at once
 
 
 class DdsSource:
-    """See :class:`epg.ros.source.Source`."""
+    """See :class:`epg.ros.message_source.MessageSource`."""
 
     def __init__(self, subscriptions: Sequence[Subscription], domain: int) -> None:
         self._participant = DomainParticipant(domain)

@@ -12,8 +12,8 @@ from typing import Any
 import cyclonedds.idl.annotations as annotate
 from cyclonedds.idl import make_idl_struct, types
 
-from epg.messages.definition import FieldType
-from epg.messages.library import Library
+from epg.generator.messages.definition import FieldType
+from epg.generator.messages.library import Library
 
 _PRIMITIVES = {"bool": bool, "byte": types.uint8, "char": types.uint8, "string": str, "wstring": str}
 

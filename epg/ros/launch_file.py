@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from epg.ros.agents import Agent
 from epg.ros.programs import Program
-from epg.ros.robot import Robot
+from epg.runs.robot import Robot
 
 FILE_NAME = "agents.launch.py"
 

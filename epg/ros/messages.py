@@ -13,10 +13,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from epg.diagnostics import Diagnostics
-from epg.messages.library import Library, full_name
-from epg.ros.robot import Robot, RobotTopic
-from epg.source import Span
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.messages.library import Library, full_name
+from epg.generator.source import Span
+from epg.runs.robot import Robot, RobotTopic
 
 SCALARS = ("std_msgs/msg/Float64", "std_msgs/msg/Float32", "std_msgs/msg/Int32", "std_msgs/msg/Bool")
 TYPES = (
@@ -42,7 +42,7 @@ def numbers(topic: RobotTopic, message: Any) -> list[float | None]:
     """One number for each item of ``topic.values``; None if the message does not contain that value."""
     if topic.type in SCALARS:
         return [float(message.data)]
-    fields = fields_of(topic)
+    fields = topic.fields
     if topic.type == "std_msgs/msg/Float64MultiArray":
         return [_element(message, topic.elements.index(field)) for field in fields]
     if topic.type == "sensor_msgs/msg/JointState":
@@ -51,11 +51,6 @@ def numbers(topic: RobotTopic, message: Any) -> list[float | None]:
         return [_field(message, field) for field in fields]
     twist = message.twist if topic.type == "geometry_msgs/msg/TwistStamped" else message
     return [_component(twist, field) for field in fields]
-
-
-def fields_of(topic: RobotTopic) -> list[str]:
-    """The names of ``topic.values`` inside the message: ``pan.position`` for ``joints/pan.position``."""
-    return [value.removeprefix(topic.name).removeprefix("/") for value in topic.values]
 
 
 def _element(message: Any, index: int) -> float | None:

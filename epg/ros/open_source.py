@@ -6,17 +6,17 @@ from __future__ import annotations
 import importlib.util
 from collections.abc import Sequence
 
-from epg.ros.source import Source, Subscription
+from epg.ros.message_source import MessageSource, Subscription
 
 
-def open_source(way: str | None, subscriptions: Sequence[Subscription], domain: int) -> Source:
+def open_source(way: str | None, subscriptions: Sequence[Subscription], domain: int) -> MessageSource:
     """Subscribes to topics in the ROS ``domain``.
 
     ``way`` is "dds", "rclpy" or None.  With None, CycloneDDS is used if it is installed.  If it is not, rclpy is used
     if ROS 2 is sourced; otherwise EPG installs CycloneDDS into its cache.  Raises
-    :class:`epg.bootstrap.MissingPackages` if that is not possible.
+    :class:`epg.generator.bootstrap.MissingPackages` if that is not possible.
     """
-    from epg import bootstrap
+    from epg.generator import bootstrap
 
     if way == "rclpy" or (way is None and not _has("cyclonedds") and _has("rclpy")):
         from epg.ros.rclpy_source import RclpySource

@@ -8,12 +8,13 @@ its port and of the model's port.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Sequence
 
-from epg.dataclass import dataclass
-from epg.ros.messages import SCALARS, fields_of, library_of
-from epg.ros.robot import Robot, RobotTopic
+from epg.generator.correction import short
+from epg.generator.dataclass import dataclass
+from epg.ros.messages import SCALARS, library_of
+from epg.runs.panels import words_in
+from epg.runs.robot import DamagedDescription, Robot, RobotTopic
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,10 @@ class Plot:
 
 
 def plots_of(robot: Robot) -> list[Plot]:
-    """The plots of a target: those of the setpoints in their order, then the other values, by unit."""
+    """The plots of a target: those of the setpoints in their order, then the other values, by unit.
+
+    Raises DamagedDescription if a message does not have a value of its topic.
+    """
     setpoints = _series(robot, robot.subscriptions)
     special = _special_words(setpoints)
     belonging: list[list[Series]] = [[] for _ in setpoints]
@@ -58,8 +62,8 @@ def plots_of(robot: Robot) -> list[Plot]:
             belonging[scores.index(max(scores))].append(one)
         else:
             others.setdefault(one.unit or one.topic, []).append(one)
-    groups = [*zip(setpoints, belonging), *((None, found) for found in others.values())]
-    return [Plot(_title(([s] if s else []) + found), s, tuple(found)) for s, found in groups]
+    groups = [*zip(setpoints, belonging), *((None, names) for names in others.values())]
+    return [Plot(_title(([s] if s else []) + names), s, tuple(names)) for s, names in groups]
 
 
 def _series(robot: Robot, topics: Iterable[RobotTopic]) -> list[Series]:
@@ -67,11 +71,11 @@ def _series(robot: Robot, topics: Iterable[RobotTopic]) -> list[Series]:
     for topic in topics:
         if topic.role != "values":
             continue
-        for value, field in zip(topic.values, fields_of(topic)):
+        for value, field in zip(topic.values, topic.fields):
             path, joint = _place(topic, field)
             wire = robot.wires.get((topic.component, field or topic.elements[0]))
             port, unit = wire or ("", "")
-            words = frozenset(word for name in (topic.component, field, port) for word in _words(name))
+            words = frozenset(word for name in (topic.component, field, port) for word in words_in(name))
             result.append(Series(robot.topic(topic), path, joint, _is_stamped(robot, topic.type), value, unit, words))
     return result
 
@@ -85,6 +89,8 @@ def _place(topic: RobotTopic, field: str) -> tuple[tuple[str | int, ...], str]:
     if topic.type == "sensor_msgs/msg/JointState":
         joint, _, quantity = field.rpartition(".")
         joints = list(dict.fromkeys(element.rpartition(".")[0] for element in topic.elements))
+        if joint not in joints:
+            raise DamagedDescription(f"the elements of the topic '{topic.name}' have no joint '{short(joint)}'")
         return (quantity, joints.index(joint)), joint
     if topic.type in ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"):
         vector, _, axis = field.partition("_")
@@ -108,13 +114,9 @@ def _special_words(setpoints: Sequence[Series]) -> list[frozenset[str]]:
     return result
 
 
-def _words(name: str) -> list[str]:
-    return [word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+|\d+", name)]
-
-
 def _title(series: Sequence[Series]) -> str:
     """The words that all series have, otherwise their names; and the unit."""
     common = frozenset.intersection(*(one.words for one in series))
-    named = " ".join(dict.fromkeys(word for word in _words(series[0].label) if word in common))
+    named = " ".join(dict.fromkeys(word for word in words_in(series[0].label) if word in common))
     title = named if named and len(series) > 1 else ", ".join(dict.fromkeys(one.label for one in series))
     return f"{title} [{series[0].unit}]" if series[0].unit else title

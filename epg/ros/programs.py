@@ -10,11 +10,11 @@ import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from epg.check.names import topic_problem
-from epg.dataclass import dataclass
-from epg.diagnostics import Diagnostics, did_you_mean
-from epg.ros.robot import HOST_SERIAL, Robot
-from epg.source import Span
+from epg.generator.check.names import topic_problem
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostics, did_you_mean
+from epg.generator.source import Span
+from epg.runs.robot import HOST_SERIAL, Robot
 
 
 @dataclass(frozen=True)

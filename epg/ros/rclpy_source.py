@@ -15,14 +15,17 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 from rosidl_runtime_py.utilities import get_message
 
-from epg.bootstrap import MissingPackages
-from epg.ros.source import Sample, Subscription
+from epg.generator.bootstrap import MissingPackages
+from epg.ros.message_source import Sample, Subscription
 
 _DEPTH = 256
 
 
 class RclpySource:
-    """See :class:`epg.ros.source.Source`.  Raises :class:`epg.bootstrap.MissingPackages` for an unknown message."""
+    """See :class:`epg.ros.message_source.MessageSource`.
+
+    Raises :class:`epg.generator.bootstrap.MissingPackages` for an unknown message.
+    """
 
     def __init__(self, subscriptions: Sequence[Subscription], domain: int) -> None:
         self._context = Context()

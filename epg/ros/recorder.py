@@ -16,17 +16,22 @@ from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
-from typing import TextIO
 
-from epg.dataclass import dataclass
-from epg.messages.library import Library
+from epg.generator.dataclass import dataclass
+from epg.generator.messages.library import Library
+from epg.ros.message_source import MessageSource, Sample, Subscription
 from epg.ros.messages import library_of, numbers
-from epg.ros.robot import Robot, RobotTopic
-from epg.ros.source import Sample, Source, Subscription
+from epg.ros.rosbag2 import open_rosbag2
+from epg.runs.csv_file import CsvFile
+from epg.runs.recording import ROWS, Row
+from epg.runs.robot import Robot, RobotTopic
 
 SETPOINTS, TOPICS, MCAP = "setpoints.csv", "topics.csv", "recording.mcap"
 
 _TURN = 0.1  # seconds between two checks whether the recording must end
+
+_FLUSH = 0.5
+"""Seconds; the files lose no more if this program is killed."""
 
 _NEAR = 10_000_000_000
 """The longest time in nanoseconds between the stamp of a message and its arrival, if both are by the same time.
@@ -119,7 +124,7 @@ def _named_by_target(robot: Robot) -> Robot:
 
 
 def record(
-    source: Source,
+    source: MessageSource,
     channels: Sequence[Channel],
     folder: Path,
     duration: float | None,
@@ -135,13 +140,12 @@ def record(
     begin = time.monotonic_ns()
     counts = [_Count() for _ in channels]
     with (
-        (folder / SETPOINTS).open("w", encoding="utf-8", newline="\n") as setpoints,
-        (folder / TOPICS).open("w", encoding="utf-8", newline="\n") as topics,
+        CsvFile(folder / SETPOINTS, ROWS[1:], value="%s") as setpoints,
+        CsvFile(folder / TOPICS, ROWS[1:], value="%s") as topics,
         _Messages(folder / MCAP, channels) if mcap else nullcontext() as messages,
     ):
         files = {SETPOINTS: setpoints, TOPICS: topics}
-        for file in files.values():
-            file.write("time,topic,value\n")
+        flushed = 0.0
         while not stopped():
             elapsed = 1e-9 * (time.monotonic_ns() - begin)
             if duration is not None and elapsed >= duration:
@@ -152,7 +156,13 @@ def record(
                 counts[sample.subscription].add(sample.time_ns)
                 _write(files[channel.file], channel, sample, begin)
                 if messages is not None:
-                    messages.write(sample)
+                    messages.write(sample, counts[sample.subscription].messages)
+            if elapsed >= flushed + _FLUSH:
+                for file in files.values():
+                    file.flush()
+                if messages is not None:
+                    messages.flush()
+                flushed = elapsed
             progress(f"{elapsed:.0f} s, {sum(count.messages for count in counts)} messages")
     publishers = source.publishers()
     return [Heard(c, count.messages, count.span, p) for c, count, p in zip(channels, counts, publishers)]
@@ -176,19 +186,21 @@ class _Messages:
     """The MCAP file of a recording."""
 
     def __init__(self, path: Path, channels: Sequence[Channel]) -> None:
-        from epg.ros.mcap_file import McapFile
-
         # One reading of the clock: the times of a recording do not jump when the computer's clock is set.
         self._to_wall = time.time_ns() - time.monotonic_ns()
-        self._file = McapFile(path)
-        self._channels = [self._file.add_channel(c.name, c.topic.type, c.topic.qos, c.library) for c in channels]
+        topics = [(channel.name, channel.topic.type, channel.topic.qos, channel.library) for channel in channels]
+        self._file, self._channels = open_rosbag2(path, topics)
 
-    def write(self, sample: Sample) -> None:
+    def write(self, sample: Sample, sequence: int) -> None:
         arrival = sample.time_ns + self._to_wall
         stamp = getattr(getattr(sample.message, "header", None), "stamp", None)
         stamped = 0 if stamp is None else stamp.sec * 1_000_000_000 + stamp.nanosec
         log_time = stamped if abs(stamped - arrival) <= _NEAR else arrival
-        self._file.write(self._channels[sample.subscription], sample.cdr(), log_time, sample.published_ns or log_time)
+        channel, published = self._channels[sample.subscription], sample.published_ns or log_time
+        self._file.write(channel, sample.cdr(), log_time, published, sequence)
+
+    def flush(self) -> None:
+        self._file.flush()
 
     def __enter__(self) -> _Messages:
         return self
@@ -197,8 +209,7 @@ class _Messages:
         self._file.close()
 
 
-def _write(file: TextIO, channel: Channel, sample: Sample, begin: int) -> None:
-    seconds = f"{1e-9 * (sample.time_ns - begin):.6f}"
-    for name, value in zip(channel.topic.values, numbers(channel.topic, sample.message)):
-        if value is not None:
-            file.write(f"{seconds},{name},{value!r}\n")
+def _write(file: CsvFile, channel: Channel, sample: Sample, begin: int) -> None:
+    seconds = 1e-9 * (sample.time_ns - begin)
+    values = zip(channel.topic.values, numbers(channel.topic, sample.message))
+    file.write(Row(seconds, value) for value in values if value[1] is not None)

@@ -19,10 +19,10 @@ from xml.etree.ElementTree import Element, SubElement
 
 import yaml
 
-from epg.dataclass import dataclass
-from epg.diagnostics import Diagnostics
-from epg.ros.robot import Robot, RobotTopic
-from epg.source import Span
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.source import Span
+from epg.runs.robot import Robot, RobotTopic
 
 _JOINT_STATE = "sensor_msgs/msg/JointState"
 _QUANTITIES = ("position", "velocity", "effort")
@@ -40,7 +40,7 @@ class Joint:
 
 
 @dataclass(frozen=True)
-class Hardware:
+class ControlledTarget:
     """A target as ros2_control sees it.  Topics have their full names; ``rate`` is in Hz."""
 
     name: str
@@ -51,7 +51,7 @@ class Hardware:
     joints: tuple[Joint, ...]
 
 
-def hardware_of(robot: Robot, diagnostics: Diagnostics) -> Hardware | None:
+def hardware_of(robot: Robot, diagnostics: Diagnostics) -> ControlledTarget | None:
     """The target as hardware of ros2_control.  None, after errors, if it cannot be controlled safely in that way."""
     span = Span(str(robot.file))
     commands = _only(robot, robot.subscriptions, "subscribes to", "subscriber", diagnostics)
@@ -72,7 +72,7 @@ def hardware_of(robot: Robot, diagnostics: Diagnostics) -> Hardware | None:
             message = f"'{states.component}' does not publish the position of the joint '{joint}'"
             hint = f"a trajectory begins at the measured position: bind a port of the model to '{joint}.position'"
             diagnostics.error("ros2-control-joint", span, message, hint=hint)
-    return Hardware(
+    return ControlledTarget(
         name=robot.name,
         commands=robot.topic(commands),
         states=robot.topic(states),
@@ -86,10 +86,10 @@ def _only(
     robot: Robot, topics: Sequence[RobotTopic], verb: str, kind: str, diagnostics: Diagnostics
 ) -> RobotTopic | None:
     """The only topic with joints.  None, after an error, if there are none or several."""
-    found = [topic for topic in topics if topic.type == _JOINT_STATE and topic.role == "values"]
-    if len(found) == 1:
-        return found[0]
-    message = f"the target {verb} {len(found) or 'no'} topics of the type {_JOINT_STATE}, and ros2_control needs one"
+    states = [topic for topic in topics if topic.type == _JOINT_STATE and topic.role == "values"]
+    if len(states) == 1:
+        return states[0]
+    message = f"the target {verb} {len(states) or 'no'} topics of the type {_JOINT_STATE}, and ros2_control needs one"
     hint = f"use one component of the kind ros_joint_state_{kind} for all joints"
     diagnostics.error("ros2-control-topics", Span(str(robot.file)), message, hint=hint)
     return None
@@ -103,7 +103,7 @@ def _joints(topic: RobotTopic) -> dict[str, tuple[str, ...]]:
     return {name: parts for name, parts in found.items() if parts}
 
 
-def xacro_file(hardware: Hardware) -> str:
+def xacro_file(hardware: ControlledTarget) -> str:
     """The macro ``<name>_ros2_control``, which the URDF includes.  Limits are those of the URDF's joints."""
     root = Element("robot", {"xmlns:xacro": "http://www.ros.org/wiki/xacro"})
     macro = SubElement(root, "xacro:macro", name=f"{hardware.name}_ros2_control")
@@ -126,7 +126,7 @@ def xacro_file(hardware: Hardware) -> str:
     return f'<?xml version="1.0"?>\n{ElementTree.tostring(root, encoding="unicode")}\n'
 
 
-def controllers_file(hardware: Hardware) -> str:
+def controllers_file(hardware: ControlledTarget) -> str:
     """Parameters of the controller manager: joint states, and trajectories for all joints with commands."""
     moved = [joint for joint in hardware.joints if joint.commands]
     trajectory = {
@@ -153,7 +153,7 @@ def _common(quantities: Sequence[Sequence[str]]) -> list[str]:
     return [part for part in _QUANTITIES if all(part in found for found in quantities)]
 
 
-def control_launch_file(hardware: Hardware) -> str:
+def control_launch_file(hardware: ControlledTarget) -> str:
     """A launch file that makes the controllers active after the first joint state."""
     return _LAUNCH.format(
         name=hardware.name,
@@ -171,7 +171,7 @@ _LAUNCH = '''\
 
 The target must be disabled until the controllers are active.  Then:
 
-    ros2 topic pub --once {enable} std_msgs/msg/Bool "{{data: true}}"
+    ros2 service call {enable} std_srvs/srv/SetBool "{{data: true}}"
 """
 
 from pathlib import Path

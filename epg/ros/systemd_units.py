@@ -11,7 +11,7 @@ import shlex
 import string
 from collections.abc import Sequence
 
-from epg.dataclass import dataclass
+from epg.generator.dataclass import dataclass
 from epg.ros.agents import Agent
 from epg.ros.launch_file import describe
 

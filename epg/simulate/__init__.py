@@ -9,9 +9,9 @@ This package only runs programs.  It does not import the layers that make them.
 """
 
 from epg.simulate.load_scenario import load_scenario
-from epg.simulate.result import Result
+from epg.simulate.result import SimulationResult
+from epg.simulate.result_table import format_table
 from epg.simulate.run import simulate
 from epg.simulate.run_system import SystemResult, simulate_system
-from epg.simulate.table import format_table
 
-__all__ = ["Result", "SystemResult", "format_table", "load_scenario", "simulate", "simulate_system"]
+__all__ = ["SimulationResult", "SystemResult", "format_table", "load_scenario", "simulate", "simulate_system"]

@@ -8,14 +8,14 @@ from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
 
-from epg.diagnostics import Diagnostics, did_you_mean
-from epg.documents.items import map_of
-from epg.documents.schema import load_schema, validate
-from epg.documents.text_file import is_file
-from epg.documents.yaml_file import load_yaml
-from epg.quantity import QuantityError, dimension_of, normal_unit, parse_quantity
-from epg.simulate.scenario import Axis, Event, Homing, Profile, ProfilePart, Scenario, Window
-from epg.source import Span, YamlNode
+from epg.generator.diagnostics import Diagnostics, did_you_mean
+from epg.generator.documents.items import map_of
+from epg.generator.documents.schema import load_schema, validate
+from epg.generator.documents.text_file import is_file
+from epg.generator.documents.yaml_file import load_yaml
+from epg.generator.quantity import QuantityError, dimension_of, normal_unit, parse_quantity
+from epg.generator.source import Span, YamlNode
+from epg.runs.scenario import Axis, Event, Homing, Profile, ProfilePart, Scenario, Window
 
 #: the keys that each shape needs, beside ``shape`` and ``start``
 _SHAPES = {
@@ -131,25 +131,11 @@ class _Reader:
 
     def event(self, node: YamlNode, duration: Fraction, profiles: Mapping[str, Profile]) -> Event:
         """One event.  After a mistake, an event that does nothing."""
-        at = self.time(node["at"])
-        actions = [key for key, _ in node.items() if key in _ACTIONS]
-        if len(actions) != 1:
-            message = f"an event must have one action, and this one has {' and '.join(actions)}"
-            message = message if actions else "this event has no action"
-            self.error("wrong-event", node["at"], message, f"write one of {', '.join(_ACTIONS)}")
+        at, action = self.time(node["at"]), self.action(node)
+        if action is None:
             return Event(at, "none")
-        action = actions[0]
-        needed, possible = _NEEDED.get(action), _POSSIBLE.get(action, ())
-        if needed and needed not in node:
-            self.error("missing-key", node[action], f"'{needed}' is missing beside '{action}'")
-            return Event(at, "none")
-        for key, value in node.items():
-            if key not in ("at", action, needed, *possible):
-                self.error("unknown-key", value, f"'{key}' has no meaning beside '{action}'")
         if at >= duration:
             self.error("beyond-duration", node["at"], f"the run ends at {float(duration):g} s")
-        if "topic" in node and "target" in node and action == "lost":
-            self.error("unknown-key", node["target"], "'target' has no meaning beside 'topic'")
         topic = self.topic(node["topic"], profiles) if "topic" in node else ""
         target = self.target(node["target"]) if "target" in node else ""
         if action == "enable":
@@ -163,6 +149,26 @@ class _Reader:
             self.names.append(("input", name, node["component"].span))
             return Event(at, action, component=name, level=str(int(level)) if isinstance(level, bool) else str(level))
         return Event(at, action, topic, duration=self.time(node[action], positive=True), target=target)
+
+    def action(self, node: YamlNode) -> str | None:
+        """The action of an event.  None after a mistake with which the event means nothing."""
+        actions = [key for key, _ in node.items() if key in _ACTIONS]
+        if len(actions) != 1:
+            message = f"an event must have one action, and this one has {' and '.join(actions)}"
+            message = message if actions else "this event has no action"
+            self.error("wrong-event", node["at"], message, f"write one of {', '.join(_ACTIONS)}")
+            return None
+        action = actions[0]
+        needed, possible = _NEEDED.get(action), _POSSIBLE.get(action, ())
+        if needed and needed not in node:
+            self.error("missing-key", node[action], f"'{needed}' is missing beside '{action}'")
+            return None
+        for key, value in node.items():
+            if key not in ("at", action, needed, *possible):
+                self.error("unknown-key", value, f"'{key}' has no meaning beside '{action}'")
+        if action == "lost" and "topic" in node and "target" in node:
+            self.error("unknown-key", node["target"], "'target' has no meaning beside 'topic'")
+        return action
 
     def target(self, node: YamlNode) -> str:
         self.of_systems.append(node.span)

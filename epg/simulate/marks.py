@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """The times of a run at which its target was enabled, was disabled, or had a fault, as marks for plots.
 
->>> columns = {"time": [0.0, 0.001, 0.002, 0.003], "enabled": [1.0, 1.0, 0.0, 1.0], "fault": [0.0, 0.0, 6.0, 0.0]}
->>> [(mark.time, mark.text) for mark in state_marks(columns)]
+>>> times = [0.0, 0.001, 0.002, 0.003]
+>>> enabled, fault = Signal(times, [1.0, 1.0, 0.0, 1.0]), Signal(times, [0.0, 0.0, 6.0, 0.0])
+>>> [(mark.time, mark.text) for mark in state_marks({"enabled": enabled, "fault": fault})]
 [(0.0, 'enabled'), (0.002, 'fault: stall'), (0.003, 'enabled')]
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
-from epg.simulate.picture import BLACK, GREEN, ORANGE, Mark
+from epg.runs.plot_style import BLACK, GREEN, ORANGE, Mark
+from epg.runs.recording import Signal
 
 FAULTS = {
     1: "not finite",
@@ -33,26 +35,30 @@ FAULTS = {
 """The names of the faults in traces: those of ``epg/fault.h`` and of EPG's component kinds."""
 
 SIGNALS = ("enabled", "fault")
-"""The columns of a trace from which marks are made."""
+"""The signals of a trace from which marks are made."""
 
 MOST = 12
 """The greatest number of marks of one target: a plot with more of them is not readable."""
 
 
-def state_marks(columns: Mapping[str, Sequence[float]], target: str = "") -> list[Mark]:
-    """The marks of one target.  ``columns`` has the columns of its trace; ``target`` is written in front of the text.
+def state_marks(signals: Mapping[str, Signal], target: str = "") -> list[Mark]:
+    """The marks of one target, which is written in front of the text if it is one of a system.
 
-    A target that is disabled at the start has no mark there.
+    A target that is disabled at the start has no mark there.  A recording without :data:`SIGNALS` has no marks.
     """
-    name = f"{target}: " if target else ""
+    name, prefix = (f"{target}: ", f"{target}/") if target else ("", "")
+    if not all(prefix + signal in signals for signal in SIGNALS):
+        return []
+    first, second = (signals[prefix + signal] for signal in SIGNALS)
+    times = first.time if first.time is second.time else sorted({*first.time, *second.time})
     marks: list[Mark] = []
     enabled, fault = 0.0, 0.0
-    for time, now, found in zip(columns["time"], columns["enabled"], columns["fault"]):
-        if now == enabled and found == fault:
+    for time, now, code in zip(times, first.at(times), second.at(times)):
+        if now == enabled and code == fault:
             continue
-        if found not in (0.0, fault):
-            marks.append(Mark(time, f"{name}fault: {FAULTS.get(int(found), str(int(found)))}", ORANGE))
+        if code not in (0.0, fault):
+            marks.append(Mark(time, f"{name}fault: {FAULTS.get(int(code), str(int(code)))}", ORANGE))
         elif now != enabled:
             marks.append(Mark(time, f"{name}enabled", GREEN) if now else Mark(time, f"{name}disabled", BLACK))
-        enabled, fault = now, found
+        enabled, fault = now, code
     return marks[:MOST]

@@ -7,8 +7,9 @@ import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from epg.diagnostics import Diagnostics
-from epg.simulate.picture import (
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.source import Span
+from epg.runs.plot_style import (
     BLACK,
     BLUE,
     GREEN,
@@ -24,8 +25,8 @@ from epg.simulate.picture import (
     save,
     with_unit,
 )
-from epg.simulate.tracking import Tracking, WindowResult
-from epg.source import Span
+from epg.runs.scenario import Window
+from epg.runs.tracking import Tracking, WindowResult
 
 GAP = 10.0
 """The number of control periods without a cycle from which on a line is broken: the target did not run."""
@@ -99,46 +100,53 @@ def _broken(tracking: Tracking) -> Tracking:
     )
 
 
-def _draw(tracking: Tracking, windows: Sequence[WindowResult], end: float, found: Sequence[Axes]) -> None:
-    axis, tracking = tracking.axis, _broken(tracking)
-    upper, lower = found[:2]
-    begin = axis.homing.until if axis.homing else 0.0
+def _draw(tracking: Tracking, windows: Sequence[WindowResult], end: float, axes: Sequence[Axes]) -> None:
+    """Draws an axis into its panels: position, error, and duty if one of the axes has it."""
+    tracking = _broken(tracking)
+    homed = tracking.axis.homing.until if tracking.axis.homing else 0.0
+    _draw_position(tracking, axes[0])
+    if homed > 0.0:
+        for panel in axes:
+            label = "homing" if panel is axes[0] else None
+            panel.axvspan(0.0, homed, color=GREY, alpha=0.15, linewidth=0.0, label=label)
+    _draw_error(tracking, homed, windows, end, axes[1])
+    for panel in axes[2:]:
+        _draw_duty(tracking, panel)
+    legend(axes[0])
+
+
+def _draw_position(tracking: Tracking, panel: Axes) -> None:
     if tracking.reference is not None:
-        upper.plot(tracking.time, tracking.reference, color=ORANGE, linewidth=2.4, label="reference (ideal loop)")
-    upper.plot(tracking.time, tracking.position, color=BLUE, linewidth=1.4, label="position")
-    upper.plot(tracking.time, tracking.setpoint, color=BLACK, linestyle=(0, (4, 4)), linewidth=0.9, label="setpoint")
-    upper.set_ylabel(with_unit(axis.name, axis.unit))
-    if begin > 0.0:
-        for panel in found:
-            label = "homing" if panel is upper else None
-            panel.axvspan(0.0, begin, color=GREY, alpha=0.15, linewidth=0.0, label=label)
-    milli = 1000.0 if axis.unit in ("rad", "m") else 1.0
+        panel.plot(tracking.time, tracking.reference, color=ORANGE, linewidth=2.4, label="reference (ideal loop)")
+    panel.plot(tracking.time, tracking.position, color=BLUE, linewidth=1.4, label="position")
+    panel.plot(tracking.time, tracking.setpoint, color=BLACK, linestyle=(0, (4, 4)), linewidth=0.9, label="setpoint")
+    panel.set_ylabel(with_unit(tracking.axis.name, tracking.axis.unit))
+
+
+def _draw_error(tracking: Tracking, begin: float, windows: Sequence[WindowResult], end: float, panel: Axes) -> None:
+    """Draws the error from ``begin`` on, and the windows in which it is evaluated."""
+    unit = tracking.axis.unit
+    milli = 1000.0 if unit in ("rad", "m") else 1.0
     shown = [i for i, time in enumerate(tracking.time) if time >= begin]
     times = [tracking.time[i] for i in shown]
     if tracking.reference is not None:
         ideal = [milli * (tracking.setpoint[i] - tracking.reference[i]) for i in shown]
-        lower.plot(times, ideal, color=ORANGE, linewidth=1.8)
+        panel.plot(times, ideal, color=ORANGE, linewidth=1.8)
     errors = [milli * (tracking.setpoint[i] - tracking.position[i]) for i in shown]
-    lower.plot(times, errors, color=BLUE, linewidth=0.9)
-    unit = f"{'m' if milli > 1 else ''}{axis.unit}" if axis.unit else ""
-    lower.set_ylabel(with_unit("error", unit))
-    _draw_windows(windows, milli, end, lower)
-    lower.set_title("error: setpoint - position", fontsize=SMALL, loc="left", pad=3.0)
-    if len(found) > 2:
-        duty = found[2]
-        if tracking.duty is None:
-            duty.set_yticks([])
-            duty.annotate(
-                "the scenario names no duty of this axis",
-                (0.01, 0.5),
-                xycoords="axes fraction",
-                va="center",
-                fontsize=SMALL,
-            )
-        else:
-            duty.plot(tracking.time, tracking.duty, color=BLUE, linewidth=0.9)
-            duty.set_ylabel("duty (1)")
-    legend(upper)
+    panel.plot(times, errors, color=BLUE, linewidth=0.9)
+    panel.set_ylabel(with_unit("error", f"m{unit}" if milli > 1 else unit))
+    _draw_windows(windows, milli, end, panel)
+    panel.set_title("error: setpoint - position", fontsize=SMALL, loc="left", pad=3.0)
+
+
+def _draw_duty(tracking: Tracking, panel: Axes) -> None:
+    if tracking.duty is None:
+        text = "the scenario names no duty of this axis"
+        panel.set_yticks([])
+        panel.annotate(text, (0.01, 0.5), xycoords="axes fraction", va="center", fontsize=SMALL)
+    else:
+        panel.plot(tracking.time, tracking.duty, color=BLUE, linewidth=0.9)
+        panel.set_ylabel("duty (1)")
 
 
 def _draw_windows(windows: Sequence[WindowResult], milli: float, end: float, panel: Axes) -> None:
@@ -149,31 +157,24 @@ def _draw_windows(windows: Sequence[WindowResult], milli: float, end: float, pan
     low, high = panel.get_ylim()
     reach = 1.1 * max(-low, high, milli * max(limits))
     panel.set_ylim(-reach, 2.1 * reach)  # room for the numbers
-    drawn: set[str] = set()
     for one in windows:
         window = one.window
-        held = all(
-            limit is None or value <= limit for value, limit in ((one.rms, window.rms), (one.largest, window.largest))
-        )
-        colour = GREEN if held else ORANGE
-        panel.axvspan(window.start, window.end, color=colour, alpha=0.1, linewidth=0.0)
-        for limit, name, style in (
-            (window.largest, "limit of the largest error", "-"),
-            (window.rms, "limit of the RMS", "--"),
-        ):
-            if limit is not None:
-                for sign in (1.0, -1.0):
-                    label = None if name in drawn else name
-                    drawn.add(name)
-                    ends = [window.start, window.end]
-                    panel.plot(
-                        ends, [sign * milli * limit] * 2, color=PURPLE, linestyle=style, linewidth=1.1, label=label
-                    )
-        if (window.end - window.start) / end > _NARROW:
-            wide = (window.end - window.start) / end > 2.0 * _NARROW
-            rms = ("" if held else "not held: ") + f"RMS {milli * one.rms:.3g}"
-            text = f"{rms},{' ' if wide else chr(10)}largest {milli * one.largest:.3g}"
+        panel.axvspan(window.start, window.end, color=GREEN if one.held else ORANGE, alpha=0.1, linewidth=0.0)
+        _draw_limit(window, window.largest, milli, panel, "limit of the largest error", "-")
+        _draw_limit(window, window.rms, milli, panel, "limit of the RMS", "--")
+        part = (window.end - window.start) / end
+        if part > _NARROW:
+            rms = ("" if one.held else "not held: ") + f"RMS {milli * one.rms:.3g}"
+            text = f"{rms},{' ' if part > 2.0 * _NARROW else chr(10)}largest {milli * one.largest:.3g}"
             at = (0.5 * (window.start + window.end), 1.05 * reach)
-            panel.annotate(text, at, ha="center", va="bottom", fontsize=SMALL, color=BLACK if held else ORANGE)
+            panel.annotate(text, at, ha="center", va="bottom", fontsize=SMALL, color=BLACK if one.held else ORANGE)
     handles, labels = panel.get_legend_handles_labels()
     panel.legend(handles, labels, loc="lower right", bbox_to_anchor=(1.0, 0.98), fontsize=SMALL, ncol=2, frameon=False)
+
+
+def _draw_limit(window: Window, limit: float | None, milli: float, panel: Axes, name: str, style: str) -> None:
+    """Draws a limit above and below zero.  Its name is in the legend once."""
+    for value in (limit, -limit) if limit is not None else ():
+        label = None if name in panel.get_legend_handles_labels()[1] else name
+        ends = [window.start, window.end]
+        panel.plot(ends, [milli * value] * 2, color=PURPLE, linestyle=style, linewidth=1.1, label=label)

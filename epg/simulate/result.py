@@ -7,15 +7,15 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from epg.dataclass import dataclass
-from epg.diagnostics import Diagnostics
-from epg.simulate.ending import Ending
-from epg.simulate.executable import Statistics
-from epg.simulate.tracking import Check, WindowResult
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostics
+from epg.runs.ending import Ending
+from epg.runs.executable import Statistics
+from epg.runs.tracking import Check, WindowResult
 
 
 @dataclass(frozen=True)
-class Result:
+class SimulationResult:
     """The result of one run.  ``files`` are the files that were written.  ``diagnostics`` contains only warnings."""
 
     statistics: Statistics

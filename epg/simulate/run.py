@@ -6,19 +6,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from epg.diagnostics import Diagnostics
-from epg.simulate.ending import how_it_ended
-from epg.simulate.executable import fail, read_statistics, read_trace, run_executable
-from epg.simulate.interface import check_names, read_interface
-from epg.simulate.judge import judge
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.source import Span
+from epg.runs.ending import how_it_ended
+from epg.runs.executable import fail, read_statistics, run_executable
+from epg.runs.interface import check_names, read_interface
+from epg.runs.judge import judge
+from epg.runs.recording import read_table
+from epg.runs.reference import load_reference
+from epg.runs.setpoint_file import setpoint_rows, write_setpoints
+from epg.runs.tracking import write_tracking
 from epg.simulate.load_scenario import load_scenario
 from epg.simulate.marks import SIGNALS, state_marks
 from epg.simulate.plot import plot
-from epg.simulate.reference import load_reference
-from epg.simulate.result import Result
-from epg.simulate.setpoints import setpoint_rows, write_setpoints
-from epg.simulate.tracking import write_tracking
-from epg.source import Span
+from epg.simulate.result import SimulationResult
 
 
 def simulate(
@@ -28,7 +29,7 @@ def simulate(
     *,
     realtime: bool = False,
     progress: Callable[[str], None] = lambda message: None,
-) -> Result:
+) -> SimulationResult:
     """Runs ``executable`` through ``scenario`` and evaluates the run.
 
     Writes into the folder ``output``, which is made if it is missing: ``setpoints.csv``, ``topics.csv``, ``trace.csv``,
@@ -56,16 +57,16 @@ def simulate(
 
     write_setpoints(setpoint_rows(read, realtime=realtime), files[0])
     run_executable(executable, output, float(read.duration), files[0], realtime=realtime, progress=progress)
-    columns = read_trace(output / "trace.csv", [*SIGNALS, *read.signals])
+    signals = read_table(output / "trace.csv", {*SIGNALS, *read.signals}.__contains__).signals
     progress("evaluating")
-    judged = judge(read, columns, reference)
+    judged = judge(read, signals, reference)
     write_tracking(judged.trackings, output / "tracking.csv")
-    if not plot(judged.trackings, judged.windows, output / "tracking.png", diagnostics, state_marks(columns)):
+    if not plot(judged.trackings, judged.windows, output / "tracking.png", diagnostics, state_marks(signals)):
         files.pop()
     statistics = read_statistics(output / "statistics.json")
-    return Result(
+    return SimulationResult(
         statistics=statistics,
-        ending=how_it_ended(read.ends, columns["enabled"], statistics),
+        ending=how_it_ended(read.ends, signals["enabled"].value, statistics),
         windows=judged.windows,
         checks=judged.checks,
         files=tuple(files),

@@ -5,26 +5,26 @@ from __future__ import annotations
 
 import json
 import time
-from array import array
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from epg.dataclass import dataclass
-from epg.diagnostics import Diagnostics
-from epg.simulate.ending import Ending, how_it_ended
-from epg.simulate.executable import read_trace, run_program
-from epg.simulate.interface import Interface, check_names, read_interface
-from epg.simulate.judge import judge
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostics
+from epg.runs.ending import Ending, how_it_ended
+from epg.runs.executable import run_program
+from epg.runs.interface import Interface, check_names, read_interface
+from epg.runs.judge import judge
+from epg.runs.plot_style import Mark
+from epg.runs.recording import Signal, read_table
+from epg.runs.reference import load_reference
+from epg.runs.scenario import FAILURES, Scenario
+from epg.runs.setpoint_file import SetpointRow, failure_lines, setpoint_rows, write_setpoints
+from epg.runs.tracking import Check, WindowResult, write_tracking
 from epg.simulate.load_scenario import load_scenario
 from epg.simulate.marks import SIGNALS, state_marks
-from epg.simulate.picture import Mark
 from epg.simulate.plot import plot
-from epg.simulate.reference import load_reference
-from epg.simulate.scenario import FAILURES, Scenario
-from epg.simulate.setpoints import Row, failure_lines, setpoint_rows, write_setpoints
-from epg.simulate.tracking import Check, WindowResult, write_tracking
 
 INPUTS, TRACES = "inputs", "traces"
 """The folders of the files of single targets."""
@@ -112,11 +112,11 @@ def simulate_system(
     patience = float(read.duration) * len(targets)
     run_program(executable, options, output.resolve(), patience, realtime=False, progress=progress)
     wall_time = time.monotonic() - begin
-    columns = _read_traces(read, targets, output / TRACES)
+    signals = _read_traces(read, targets, output / TRACES)
     progress("evaluating")
-    judged = judge(read, columns, reference)
+    judged = judge(read, signals, reference)
     write_tracking(judged.trackings, output / "tracking.csv")
-    marks = [*_failures(read), *(mark for target in targets for mark in _states(columns, target))]
+    marks = [*_failures(read), *(mark for target in targets for mark in state_marks(signals, target))]
     if not plot(judged.trackings, judged.windows, output / "tracking.png", diagnostics, marks):
         files.pop()
     found = json.loads((output / "statistics.json").read_text(encoding="utf-8"))
@@ -127,7 +127,7 @@ def simulate_system(
         wall_time=wall_time,
         targets=states,
         endings={
-            name: _ending(read, name, columns[f"{name}/enabled"], state)
+            name: _ending(read, name, signals[f"{name}/enabled"].value, state)
             for name, state in states.items()
             if state.state == "runs" or name in read.ends_of
         },
@@ -143,7 +143,7 @@ def _write_inputs(scenario: Scenario, interface: Interface, output: Path) -> lis
     (output / INPUTS).mkdir(exist_ok=True)
     options = ["--duration", repr(float(scenario.duration)), "--trace", str(output / TRACES)]
     options += ["--topics", str(output / "topics.csv"), "--statistics", str(output / "statistics.json")]
-    sent: dict[Row, None] = {}
+    sent: dict[SetpointRow, None] = {}
     for target, topics in interface.topics.items():
         file = output / INPUTS / f"{target}.csv"
         rows = setpoint_rows(scenario, target=target, topics=topics)
@@ -157,29 +157,23 @@ def _write_inputs(scenario: Scenario, interface: Interface, output: Path) -> lis
     return [*options, "--events", str(events)]
 
 
-def _read_traces(scenario: Scenario, targets: Sequence[str], folder: Path) -> dict[str, array[float]]:
-    """The columns that the scenario needs, with the names that they have there."""
-    columns: dict[str, array[float]] = {}
-    for target in targets:
-        own = [signal.partition("/")[2] for signal in scenario.signals if signal.partition("/")[0] == target]
-        read = read_trace(folder / f"{target}.csv", [*SIGNALS, *own])
-        columns |= {f"{target}/{name}": values for name, values in read.items()}
-    own = [signal.removeprefix(_PLANT) for signal in scenario.signals if signal.startswith(_PLANT)]
-    if own:  # of the system's plant
-        read = read_trace(folder / "plant.csv", own)
-        columns |= {"time": read.pop("time")} | {f"{_PLANT}{name}": values for name, values in read.items()}
-    return columns
+def _read_traces(scenario: Scenario, targets: Sequence[str], folder: Path) -> dict[str, Signal]:
+    """The signals that the scenario needs, with the names that they have there."""
+    wanted = {*scenario.signals, *(f"{target}/{name}" for target in targets for name in SIGNALS)}
+    files = [(f"{target}/", folder / f"{target}.csv") for target in targets]
+    if any(signal.startswith(_PLANT) for signal in wanted):
+        files.append((_PLANT, folder / "plant.csv"))
+    signals: dict[str, Signal] = {}
+    for prefix, file in files:
+        found = read_table(file, lambda name, prefix=prefix: prefix + name in wanted)  # type: ignore[misc]
+        signals |= {prefix + name: signal for name, signal in found.signals.items()}
+    return signals
 
 
 def _failures(scenario: Scenario) -> list[Mark]:
     """The failures of the scenario as marks of the plot."""
     failures = [event for event in scenario.events if event.kind in FAILURES]
     return [Mark(float(event.at), f"{event.target}: {event.kind}") for event in failures]
-
-
-def _states(columns: Mapping[str, Sequence[float]], target: str) -> list[Mark]:
-    """The marks of one target: when it was enabled, was disabled or had a fault."""
-    return state_marks({name: columns[f"{target}/{name}"] for name in ("time", *SIGNALS)}, target)
 
 
 def _ending(scenario: Scenario, target: str, enabled: Sequence[float], state: TargetState) -> Ending:

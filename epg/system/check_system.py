@@ -10,14 +10,14 @@ from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
-from epg.dataclass import dataclass
-from epg.diagnostics import Diagnostics, Note, did_you_mean
-from epg.emit.macros import Macros
-from epg.emit.symbols import TEMPLATES
-from epg.emit.template import environment
-from epg.emit.topics import TopicView, topics_of
-from epg.quantity import conversion_factor, dimension_of, show
-from epg.resolve.application import Application, Plant, Topic, Wire
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostics, Note, did_you_mean
+from epg.generator.emit.macros import Macros
+from epg.generator.emit.symbols import TEMPLATES
+from epg.generator.emit.template import environment
+from epg.generator.emit.topics import TopicView, topics_of
+from epg.generator.quantity import conversion_factor, dimension_of, show
+from epg.generator.resolve.application import Application, Plant, Topic, Wire
 from epg.system.loader import Loader
 from epg.system.loops import loops_of
 from epg.system.plant import check_plant, load_plant
@@ -273,13 +273,13 @@ class _Checker:
         self.diagnostics.error("unit-mismatch", connection.receiver.span, message, hint=hint)
 
     def check_range(self, connection: Connection, given: Range, wanted: Range) -> None:
-        """Warns if the receiver limits values that the sender can send.  Compares limits that both ends state."""
+        """Warns if the receiver refuses values that the sender can send.  Compares limits that both ends state."""
         low = -math.inf < given[0] < wanted[0]
         high = wanted[1] < given[1] < math.inf
         for exceeded, end in ((low, 0), (high, 1)):
             if exceeded:
                 message = f"{_both(connection)}: values to {given[end]:g} are sent, "
-                message += f"but the receiver limits them to {wanted[end]:g}"
+                message += f"but the receiver refuses values beyond {wanted[end]:g}"
                 hint = "state the same 'limits' in the bindings of both"
                 self.diagnostics.warning("range-mismatch", connection.receiver.span, message, hint=hint)
 

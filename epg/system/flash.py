@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes the images of a system to its boards, with the tools and arguments that the families of the chips name.
 
-No program is written before all images and all boards were checked:
+A swapped serial number would move the wrong robot, and boards with images of different builds may not understand each
+other's messages.  Therefore no program is written before all images and all boards were checked:
 
 1. Each target has an image that was built from the files as they are now, and a board.
 2. Each board answers, has the expected chip, and has no program of another target.
@@ -23,20 +24,20 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import field
 from pathlib import Path
 
-from epg.catalog.platform import Flashing
-from epg.dataclass import dataclass
-from epg.diagnostics import Diagnostics
-from epg.emit.cmake import PathNames
-from epg.emit.outputs import application_outputs
-from epg.resolve.application import Application
-from epg.ros.robot import Robot, robot_of
-from epg.source import Span
+from epg.generator.catalog.platform import Flashing
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.emit.cmake import PathNames
+from epg.generator.emit.outputs import application_outputs
+from epg.generator.resolve.application import Application
+from epg.generator.source import Span
+from epg.generator.tools.find_tool import Surroundings, find_tool
+from epg.generator.tools.tools import Tool
+from epg.generator.tools.usb_boards import UsbDevice, attached
+from epg.runs.robot import Robot, robot_of
 from epg.system.check_system import CheckedSystem
 from epg.system.images import built_hash, image_file, images_of
 from epg.system.system import SystemTarget
-from epg.tools.find_tool import Surroundings, find_tool
-from epg.tools.tools import Tool
-from epg.tools.usb_boards import UsbDevice, attached
 
 PATIENCE = 10.0
 """The longest time in seconds in which a board must answer after a restart."""
@@ -54,7 +55,7 @@ class UnusableTool(Exception):
 
 
 @dataclass(frozen=True)
-class Job:
+class FlashJob:
     """The image of the target ``name``, and its board.  ``span`` is the position of messages about it.
 
     ``board`` are the arguments that choose the board.  ``shown`` is the board in messages.
@@ -87,7 +88,7 @@ def flashing_of(checked: CheckedSystem, name: str) -> Flashing | None:
     return None if family is None else family.flash
 
 
-def plan(checked: CheckedSystem, names: Collection[str], images: Path, diagnostics: Diagnostics) -> list[Job]:
+def plan(checked: CheckedSystem, names: Collection[str], images: Path, diagnostics: Diagnostics) -> list[FlashJob]:
     """The jobs of the targets ``names``, in the order of the file.  Reports all mistakes."""
     built = {name for name, _, _ in images_of(checked)}
     by_family: dict[str, list[str]] = {}
@@ -119,7 +120,7 @@ def plan(checked: CheckedSystem, names: Collection[str], images: Path, diagnosti
         chosen = _board(target, flashing, by_family[application.target.soc.family], diagnostics)
         if image is not None and chosen is not None:
             board, serial, shown = chosen
-            jobs.append(Job(name, target.span, application, flashing, image, board, serial, shown))
+            jobs.append(FlashJob(name, target.span, application, flashing, image, board, serial, shown))
     return jobs
 
 
@@ -213,13 +214,13 @@ class Flasher:
     With ``replace``, programs of other targets are overwritten.  ``run_tool`` runs a command, as :func:`run_command`.
     """
 
-    jobs: Sequence[Job]
+    jobs: Sequence[FlashJob]
     programs: Mapping[str, str]
     diagnostics: Diagnostics
     show: Callable[[str], None]
     replace: bool = False
     run_tool: Callable[[Sequence[str], bool], tuple[int, str]] = run_command
-    restarted: list[Job] = field(default_factory=list)
+    restarted: list[FlashJob] = field(default_factory=list)
 
     def dry_run(self) -> None:
         """Prints the commands, and runs none."""
@@ -277,12 +278,12 @@ class Flasher:
             self._check(job, output)
         self.diagnostics.stop_if_errors()
 
-    def _check(self, job: Job, facts: str) -> None:
+    def _check(self, job: FlashJob, facts: str) -> None:
         """Reports a board that has another chip, or a program of another target."""
-        found = re.search(job.flashing.chip, facts, re.MULTILINE)
+        match = re.search(job.flashing.chip, facts, re.MULTILINE)
         chip = job.application.target.soc
-        if found is None or found[1] != chip.identity:
-            other = f"has the chip {found[1]}" if found else "does not say which chip it has"
+        if match is None or match[1] != chip.identity:
+            other = f"has the chip {match[1]}" if match else "does not say which chip it has"
             title = chip.title if chip.identity in chip.title else f"{chip.title}, which is {chip.identity}"
             message = f"the board {job.shown} {other}, but '{job.name}' is for the {title}"
             hint = f"correct '{job.flashing.named_by}' of '{job.name}', or attach another board"
@@ -293,18 +294,18 @@ class Flasher:
             hint = f"correct '{job.flashing.named_by}', or add --replace if '{job.name}' shall replace it"
             self.diagnostics.error("other-program", job.span, message, hint=hint)
 
-    def _is_attached(self, job: Job) -> bool:
+    def _is_attached(self, job: FlashJob) -> bool:
         """False if this operating system lists USB devices, and the board is not among them."""
         devices = attached(job.flashing.usb)
         return devices is None or any(device.serial == job.serial for device in devices)
 
-    def _report_missing(self, job: Job, output: str) -> None:
+    def _report_missing(self, job: FlashJob, output: str) -> None:
         message = f"the board {job.shown} of '{job.name}' does not answer: {_last(output)}"
         hint = "attach it" + (f", or {job.flashing.by_hand}" if job.flashing.by_hand else "")
         hint += _listed(attached(job.flashing.usb), job.flashing)
         self.diagnostics.error("board-not-found", job.span, message, hint=hint)
 
-    def _report_failure(self, job: Job, status: int, done: Sequence[Job], others: Sequence[Job]) -> None:
+    def _report_failure(self, job: FlashJob, status: int, done: Sequence[FlashJob], others: Sequence[FlashJob]) -> None:
         tool = job.flashing.tool
         message = f"the image of '{job.name}' was not written: {tool} ended with status {status}"
         groups = [("written", done), ("not written", others)]
@@ -313,7 +314,7 @@ class Flasher:
         self.diagnostics.error("flash-failed", job.span, message, hint=hint)
         self.diagnostics.stop_if_errors()
 
-    def _wait(self, job: Job) -> tuple[bool, str]:
+    def _wait(self, job: FlashJob) -> tuple[bool, str]:
         """Waits until a restarted board answers."""
         self._show(job, job.flashing.find)
         end = time.monotonic() + PATIENCE
@@ -323,19 +324,19 @@ class Flasher:
                 return good, output
             time.sleep(_PAUSE)
 
-    def _run(self, job: Job, arguments: Sequence[str]) -> tuple[bool, str]:
+    def _run(self, job: FlashJob, arguments: Sequence[str]) -> tuple[bool, str]:
         self._show(job, arguments)
         return self._answer(job, arguments)
 
-    def _answer(self, job: Job, arguments: Sequence[str]) -> tuple[bool, str]:
+    def _answer(self, job: FlashJob, arguments: Sequence[str]) -> tuple[bool, str]:
         """True if the command succeeds, and its output."""
         status, output = self.run_tool(self._command(job, arguments), False)
         return status == 0, output
 
-    def _command(self, job: Job, arguments: Sequence[str]) -> list[str]:
+    def _command(self, job: FlashJob, arguments: Sequence[str]) -> list[str]:
         return [self.programs[job.flashing.tool], *job.arguments(arguments)]
 
-    def _show(self, job: Job, arguments: Sequence[str]) -> None:
+    def _show(self, job: FlashJob, arguments: Sequence[str]) -> None:
         self.show(f"{shlex.join(self._command(job, arguments))}  # {job.name}")
 
 
@@ -349,7 +350,7 @@ def program_of(tool: Tool, where: Surroundings) -> str:
     """The program of a tool: its name if it is in ``PATH``, else its path; empty if it is not found."""
     if shutil.which(tool.name, path=where.path):
         return tool.name
-    found = find_tool(tool, where).path
-    if found is None:
+    path = find_tool(tool, where).path
+    if path is None:
         return ""
-    return shutil.which(tool.name, path=str(found)) or "" if found.is_dir() else str(found)
+    return shutil.which(tool.name, path=str(path)) or "" if path.is_dir() else str(path)

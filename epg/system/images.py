@@ -7,7 +7,7 @@ import json
 import re
 from pathlib import Path
 
-from epg.diagnostics import Diagnostics
+from epg.generator.diagnostics import Diagnostics
 from epg.system.check_system import CheckedSystem
 from epg.system.system import SystemTarget
 

@@ -9,16 +9,16 @@ from fractions import Fraction
 from pathlib import Path
 from types import MappingProxyType
 
-from epg.check.communication import time_of
-from epg.check.target_names import check_name
-from epg.dataclass import dataclass
-from epg.diagnostics import Diagnostics, Note, did_you_mean
-from epg.documents.items import map_of
-from epg.documents.schema import load_schema, validate
-from epg.documents.yaml_file import load_yaml, newer_version
-from epg.models.model_yaml import step_of
-from epg.source import Span, YamlNode
-from epg.system.system import Clock, Connection, End, System, SystemPlant, SystemTarget, Transport
+from epg.generator.check.communication import time_of
+from epg.generator.check.target_names import check_name
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostics, Note, did_you_mean
+from epg.generator.documents.items import map_of
+from epg.generator.documents.schema import load_schema, validate
+from epg.generator.documents.yaml_file import load_yaml, newer_version
+from epg.generator.importers.by_hand.model_yaml import step_of
+from epg.generator.source import Span, YamlNode
+from epg.system.system import Connection, End, SimulatedClock, System, SystemPlant, SystemTarget, Transport
 
 _PARAMETERS = ("type", "unit", "qos")
 
@@ -37,6 +37,11 @@ def parse_system(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = 
     """
     root = load_yaml(path, diagnostics, wanted_by)
     if root is None or (root.is_mapping and newer_version(root, "version", diagnostics)):
+        return None
+    if root.is_mapping and "target" in root and "components" in root and "system" not in root:
+        message = "this is a target configuration, not a system"
+        hint = "name a *.system.yaml; 'epg connect' and your project's CMake targets take a single target"
+        diagnostics.error("system-is-tcf", root.key_span("target"), message, hint=hint)
         return None
     if not validate(root, load_schema("system"), diagnostics):
         return None
@@ -107,12 +112,12 @@ class _Reader:
                 span=span,
             )
 
-    def clock(self, node: YamlNode | None) -> Clock:
+    def clock(self, node: YamlNode | None) -> SimulatedClock:
         if node is None:
-            return Clock()
+            return SimulatedClock()
         drift = node.get("drift")
         parts = float(drift.value) if drift is not None and isinstance(drift.value, (int, float)) else 0.0
-        return Clock(self.time(node, "start", Fraction(0)), round(1000 * parts))
+        return SimulatedClock(self.time(node, "start", Fraction(0)), round(1000 * parts))
 
     def time(self, node: YamlNode, key: str, default: Fraction) -> Fraction:
         seconds = time_of(node.get(key), self.diagnostics)
@@ -150,8 +155,8 @@ class _Reader:
         """Reports boards and debug probes that two targets name."""
         seen: dict[str, Span] = {}
         for _, node in section.items():
-            stated = [found for key in ("serial", "probe") if (found := node.get(key)) is not None]
-            for element in (element for found in stated for element in found.elements() or (found,)):
+            stated = [number for key in ("serial", "probe") if (number := node.get(key)) is not None]
+            for element in (element for number in stated for element in number.elements() or (number,)):
                 first = seen.setdefault(str(element.value), element.span)
                 if first != element.span:
                     message = f"serial number '{element.value}' belongs to another target already"

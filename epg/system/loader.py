@@ -8,15 +8,15 @@ from dataclasses import field
 from functools import cached_property
 from pathlib import Path
 
-from epg.catalog.catalog import Catalog, load_catalog
-from epg.catalog.platform import Family
-from epg.data import targets_roots
-from epg.dataclass import dataclass
-from epg.diagnostics import Diagnostics
-from epg.models import load_model
-from epg.models.model import Model
-from epg.project import ModelReader, Request, load_parts
-from epg.resolve.application import Application
+from epg.generator.catalog.catalog import Catalog, load_catalog
+from epg.generator.catalog.platform import Family
+from epg.generator.data import targets_roots
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.importers import load_model
+from epg.generator.models.model import Model
+from epg.generator.project import ModelReader, Request, load_parts
+from epg.generator.resolve.application import Application
 
 
 @dataclass

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import field
 
-from epg.dataclass import dataclass
+from epg.generator.dataclass import dataclass
+from epg.generator.quantity import show
+from epg.generator.resolve.application import Plant
 from epg.graph.svg import WIRES, Picture, width
-from epg.quantity import show
-from epg.resolve.application import Plant
 from epg.system.check_system import CheckedSystem, Link
 from epg.system.system import End
 

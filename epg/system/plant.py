@@ -10,15 +10,14 @@ import re
 from collections.abc import Mapping
 from dataclasses import replace
 
-from epg.check.bindings import Binding, Bindings, load_bindings
-from epg.check.model import check_model_names
-from epg.diagnostics import Diagnostics, Note, did_you_mean
-from epg.models.model import Model
-from epg.models.other_step import with_step
-from epg.project import ModelReader
-from epg.quantity import show
-from epg.resolve.application import Application, Plant, ResolvedComponent
-from epg.resolve.resolve import PlantFiles, wired_plant
+from epg.generator.check.bindings import Binding, Bindings, load_bindings
+from epg.generator.check.model import check_model_names
+from epg.generator.diagnostics import Diagnostics, Note, did_you_mean
+from epg.generator.models.model import Model
+from epg.generator.project import ModelReader
+from epg.generator.quantity import show
+from epg.generator.resolve.application import Application, Plant, ResolvedComponent
+from epg.generator.resolve.resolve import PlantFiles, wired_plant
 from epg.system.system import System, SystemPlant
 
 
@@ -29,7 +28,7 @@ def load_plant(plant: SystemPlant, read_model: ModelReader, diagnostics: Diagnos
     if model is None or bindings is None:
         return None
     if plant.period is not None:
-        stepped = with_step(model, plant.period)
+        stepped = model.with_step(plant.period)
         if stepped is None:
             message = f"the step of {model.name} is {show(model.step, 'time')}: its code does not take another one"
             hint = "remove 'period', or export the model with this step"

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 
-from epg.resolve.application import Step
+from epg.generator.resolve.application import ConversionStep
 
 Range = tuple[float, float]
 """The lowest and the highest value; infinite without a limit."""
@@ -13,21 +13,21 @@ Range = tuple[float, float]
 ALL: Range = (-math.inf, math.inf)
 
 
-def sent_range(steps: tuple[Step, ...]) -> Range:
+def sent_range(steps: tuple[ConversionStep, ...]) -> Range:
     """The values that can leave a wire from a model to a topic."""
-    found = ALL
+    possible = ALL
     for step in steps:
-        found = _cut(_moved(found, float(step.scale), step.offset), step.limits or ALL)
-    return found
+        possible = _cut(_moved(possible, float(step.scale), step.offset), step.limits or ALL)
+    return possible
 
 
-def received_range(steps: tuple[Step, ...]) -> Range:
-    """The values of a topic that a wire to a model does not limit."""
-    found = ALL
+def received_range(steps: tuple[ConversionStep, ...]) -> Range:
+    """The values of a topic that the limits of a wire to a model permit."""
+    possible = ALL
     for step in reversed(steps):
         scale = float(step.scale)
-        found = _moved(_cut(found, step.limits or ALL), 1 / scale, -step.offset / scale)
-    return found
+        possible = _moved(_cut(possible, step.limits or ALL), 1 / scale, -step.offset / scale)
+    return possible
 
 
 def _moved(values: Range, scale: float, offset: float) -> Range:

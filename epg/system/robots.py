@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import json
 
-from epg.emit.application import Emitter
-from epg.emit.cmake import PathNames
-from epg.emit.description import describe
-from epg.ros.robot import Robot, robot_of
+from epg.generator.emit.application import Emitter
+from epg.generator.emit.cmake import PathNames
+from epg.generator.emit.description import describe
+from epg.runs.robot import Robot, robot_of
 from epg.system.check_system import CheckedSystem
 
 

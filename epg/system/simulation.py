@@ -6,21 +6,20 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from epg.check.simulated import PLATFORM
-from epg.dataclass import dataclass
-from epg.diagnostics import Diagnostics
-from epg.emit.application import starts_by_step
-from epg.emit.cmake import PathNames, images_cmake, system_cmake
-from epg.emit.licence import with_licence
-from epg.emit.model import emit_model, model_build
-from epg.emit.outputs import application_outputs
-from epg.emit.symbols import TEMPLATES
-from epg.emit.template import environment
-from epg.emit.text import Code, identifier
-from epg.models import load_model
-from epg.models.model import Model
-from epg.project import load_application
-from epg.resolve.application import Application, Topic
+from epg.generator.check.simulated import PLATFORM
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.emit.cmake import PathNames, Reads, images_cmake, reads_of, system_cmake
+from epg.generator.emit.licence import with_licence
+from epg.generator.emit.model import emit_model, model_build
+from epg.generator.emit.outputs import application_outputs
+from epg.generator.emit.symbols import TEMPLATES
+from epg.generator.emit.template import environment
+from epg.generator.emit.text import Code, identifier
+from epg.generator.importers import load_model
+from epg.generator.models.model import Model
+from epg.generator.project import load_application
+from epg.generator.resolve.application import Application, Topic
 from epg.system.check_system import CheckedSystem
 from epg.system.images import images_of
 from epg.system.plant import load_plant, with_plant
@@ -104,15 +103,17 @@ def simulation_outputs(
         f"{program}_system.c": template.render(system=system, targets=targets, connections=connections, plant=plant)
     }
     files[f"{program}_images.cmake"] = images_cmake(images_of(checked), names)
-    used = {path for application in applications.values() for path in application.files}
+    reads = Reads()
+    for application in (*checked.applications.values(), *applications.values()):
+        reads |= reads_of(application)
     library = None
     if plant is not None and checked.plant is not None and system.plant is not None:
         model, parameters = checked.plant.model, checked.plant.parameters
         name = plant_library(program)
         library = name, model, model_build(model, name, parameters)
         files |= emit_model(model, name, parameters, terminate=False)
-        used |= {*model.files, system.plant.bindings}
-    cmake = system_cmake(program, sorted(used), [target.name for target in targets], library, files, names)
+        reads |= Reads(frozenset({system.plant.bindings}))
+    cmake = system_cmake(program, reads, [target.name for target in targets], library, files, names)
     return with_licence({**files, f"{program}.cmake": cmake})
 
 
@@ -133,7 +134,7 @@ def _plant(checked: CheckedSystem, program: str) -> tuple[PlantView | None, froz
         file=f"{plant_library(program)}_unit.so",
         step_ns=step.numerator,
         divisor=step.denominator,
-        starts_by_step=starts_by_step(plant.model),
+        starts_by_step=plant.model.code.starts_by_step,
     )
     wires = (*plant.inputs, *plant.outputs)
     return view, frozenset(wire.component.name.partition("/")[0] for wire in wires)

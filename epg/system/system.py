@@ -9,14 +9,14 @@ from fractions import Fraction
 from pathlib import Path
 from types import MappingProxyType
 
-from epg.check.topic_ends import TopicEnd
-from epg.dataclass import dataclass
-from epg.project import Request, SystemPart
-from epg.source import Span, YamlNode
+from epg.generator.check.topic_ends import TopicEnd
+from epg.generator.dataclass import dataclass
+from epg.generator.project import Request, SystemPart
+from epg.generator.source import Span, YamlNode
 
 
 @dataclass(frozen=True)
-class Clock:
+class SimulatedClock:
     """The clock of a target in a simulation: the time of the first tick in s, and the drift in parts per 10^9."""
 
     start: Fraction = Fraction(0)
@@ -50,7 +50,7 @@ class SystemTarget:
     serial: str | None
     probe: str | None
     project: Path | None
-    clock: Clock
+    clock: SimulatedClock
     span: Span
 
 
@@ -142,14 +142,14 @@ class System:
 
     def _ends(self, target: str) -> list[TopicEnd]:
         """The ends of a target.  Connections with the same topic component have one end."""
-        found: dict[tuple[str, bool], TopicEnd] = {}
+        ends: dict[tuple[str, bool], TopicEnd] = {}
         for connection in self.connections:
             for end, receives in ((connection.sender, False), (connection.receiver, True)):
                 if end.target == target:
                     made = TopicEnd(end.port, self.topic(connection.sender), receives, connection.parameters, end.span)
-                    found.setdefault((end.component, receives), made)
+                    ends.setdefault((end.component, receives), made)
         for end in self.world:
             if end.target == target:
                 made = TopicEnd(end.port, self.topic(end), True, {}, end.span)
-                found.setdefault((end.component, True), made)
-        return list(found.values())
+                ends.setdefault((end.component, True), made)
+        return list(ends.values())

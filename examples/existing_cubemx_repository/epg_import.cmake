@@ -6,10 +6,11 @@
 # It searches EPG in this order:
 #   1. EPG_PATH, a variable of CMake or of the environment: a checkout of EPG;
 #   2. EPG_DIR, a variable of CMake or of the environment: the folder of EPGConfig.cmake;
-#   3. the project epg of the west workspace, if west configures;
-#   4. an installed Python package: that of Python3_EXECUTABLE, else of python3 or python on the PATH, else of the
+#   3. the modules of Zephyr that ZEPHYR_MODULES, EXTRA_ZEPHYR_MODULES or ZEPHYR_EXTRA_MODULES name;
+#   4. the project epg of the west workspace, if west configures;
+#   5. an installed Python package: that of Python3_EXECUTABLE, else of python3 or python on the PATH, else of the
 #      program epg;
-#   5. CMake's own search.
+#   6. CMake's own search.
 #
 # It works before and after project().  It also works with a toolchain file that confines find_package() to a sysroot, as
 # those of microcontrollers do.  The place of EPG is kept in CMake's cache.
@@ -20,7 +21,8 @@ endif()
 
 # Zephyr's sysbuild passes the variables of its command line to its images in a file.
 if(SYSBUILD AND EXISTS "${SYSBUILD_CACHE}")
-  file(STRINGS "${SYSBUILD_CACHE}" _epg_lines REGEX "^(EPG_PATH|EPG_DIR|WEST_PYTHON|Python3_EXECUTABLE):" ENCODING UTF-8)
+  file(STRINGS "${SYSBUILD_CACHE}" _epg_lines ENCODING UTF-8
+    REGEX "^(EPG_PATH|EPG_DIR|WEST_PYTHON|Python3_EXECUTABLE|ZEPHYR_MODULES|EXTRA_ZEPHYR_MODULES|ZEPHYR_EXTRA_MODULES):")
   foreach(_epg_line IN LISTS _epg_lines)
     if(_epg_line MATCHES "^([^:]+):[^=]*=(.+)$")
       set(${CMAKE_MATCH_1} "${CMAKE_MATCH_2}")
@@ -53,6 +55,15 @@ if(EPG_DIR)
 endif()
 if(NOT EPG_DIR AND EPG_IMPORTED_DIR AND EXISTS "${EPG_IMPORTED_DIR}/EPGConfig.cmake")
   set(EPG_DIR "${EPG_IMPORTED_DIR}")
+endif()
+if(NOT EPG_DIR)
+  foreach(_epg_variable ZEPHYR_MODULES EXTRA_ZEPHYR_MODULES ZEPHYR_EXTRA_MODULES)
+    foreach(_epg_folder IN LISTS ${_epg_variable} ITEMS $ENV{${_epg_variable}})
+      if(NOT EPG_DIR AND EXISTS "${_epg_folder}/cmake/EPGConfig.cmake")
+        set(EPG_DIR "${_epg_folder}/cmake")
+      endif()
+    endforeach()
+  endforeach()
 endif()
 if(NOT EPG_DIR AND WEST_PYTHON)
   execute_process(COMMAND "${WEST_PYTHON}" -m west list -f "{abspath}" epg WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}"

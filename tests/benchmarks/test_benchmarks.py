@@ -8,12 +8,14 @@ import re
 import shutil
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
 
 from tests.connect.browser.conftest import NAMES
 from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js, skip_if_missing, tool, unicorn
+from tests.platforms.firmware.builds import PROCESSORS
 from tests.platforms.stm32.images import PARTS
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -33,6 +35,7 @@ SMALLEST = {
     "pico_closed_loop": ["--short", "1"],
     "pico_communication": ["--targets", "1"],
     "pico_text": [],
+    "firmware_size": [],
     "setpoint_latency": ["--steps", "20", "--platforms", "1"],
     "teleoperation": ["--seeds", "1"],
     "pico_polls": ["--milliseconds", "30", "--platforms", "1"],
@@ -42,6 +45,7 @@ SMALLEST = {
     "live_stop": ["--count", "3"],
     "ping_pong": ["--pings", "5", "--flat", "20"],
 }
+CLIENT = (lambda: tool("micro_xrce_dds_client"), lambda: tool("micro_cdr"))
 STM32 = ("cmsis_device_h7", *PARTS)
 PROGRAMS = sorted(
     path.stem
@@ -51,6 +55,7 @@ PROGRAMS = sorted(
 )
 
 
+@cache
 def run(program: str) -> str:
     command = [sys.executable, str(BENCHMARKS / f"{program}.py"), *SMALLEST[program]]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600, env=dict(os.environ))
@@ -62,17 +67,19 @@ def run(program: str) -> str:
 def test_it_runs_and_prints_what_the_page_shows(program: str) -> None:
     """The programs write the page: it has the same tables in the same order."""
     if program == "runtime" and shutil.which("valgrind") is None:
-        pytest.skip("valgrind is not installed: apt install valgrind")
+        pytest.skip("valgrind is not installed: sudo apt install valgrind")
     if program == "live_stop":
         pytest.importorskip("playwright", reason="playwright is not installed: pip install playwright")
         if not any(map(shutil.which, NAMES)):
-            pytest.skip("Chromium is not installed: apt install chromium")
+            pytest.skip("Chromium is not installed: sudo apt install chromium")
     if program in ("configure", "scaling", "system", "live_stop") and shutil.which("cmake") is None:
-        pytest.skip("cmake is not installed: apt install cmake")
+        pytest.skip("CMake is not installed: sudo apt install cmake")
     if program.startswith("pico") or program in ("setpoint_latency", "teleoperation"):
         skip_if_missing(pico_sdk, arm_gcc, node, rp2040js, unicorn, lambda: tool("freertos_kernel"))
     if program == "stm32_cycle":
         skip_if_missing(arm_gcc, unicorn, *(lambda name=name: tool(name) for name in STM32))
+    if program == "firmware_size":
+        skip_if_missing(lambda: PROCESSORS["m4f"].tool("gcc"), *CLIENT)
     if program in ("network_situations", "ping_pong"):
         pytest.importorskip("cyclonedds", reason="CycloneDDS for Python is not installed: pip install cyclonedds")
         skip_if_missing(lambda: tool("cyclonedds"))
@@ -86,7 +93,7 @@ def test_it_runs_and_prints_what_the_page_shows(program: str) -> None:
     assert f"python benchmarks/{program}.py" in section[1]
 
 
-@pytest.mark.skipif(shutil.which("valgrind") is None, reason="valgrind is not installed: apt install valgrind")
+@pytest.mark.skipif(shutil.which("valgrind") is None, reason="valgrind is not installed: sudo apt install valgrind")
 def test_generated_code_costs_little_more_than_code_written_by_hand() -> None:
     """Counts instructions instead of time: the result does not depend on the load of the machine."""
     found = re.search(r"everything else +[\d.]+ +[\d.]+ +([\d.]+) x", run("runtime"))
@@ -101,10 +108,22 @@ def test_a_cycle_on_an_stm32_costs_little_more_than_one_written_by_hand() -> Non
     assert float(found[1]) <= 1.2
 
 
+def test_a_debug_build_needs_little_more_flash_than_a_release_build() -> None:
+    skip_if_missing(lambda: PROCESSORS["m4f"].tool("gcc"), *CLIENT)
+    rows = re.findall(
+        r"^(none|console|xrce and console) +([\d,]+) +([\d,]+) +([\d,]+) ", run("firmware_size"), re.MULTILINE
+    )
+    assert len(rows) == 3
+    for name, release, debug, not_optimised in rows:
+        of_release, of_debug, of_both = (int(size.replace(",", "")) for size in (release, debug, not_optimised))
+        assert of_debug <= 1.05 * of_release, name
+        assert of_both > 1.4 * of_release, name
+
+
 def test_the_two_programs_are_compared_through_faults() -> None:
     """A difference would end the program; the compared run must contain enough events."""
     if shutil.which("valgrind") is None:
-        pytest.skip("valgrind is not installed: apt install valgrind")
+        pytest.skip("valgrind is not installed: sudo apt install valgrind")
     found = re.search(r"have ([\d,]+) cycles; in ([\d,]+) of these, the target was disabled", run("runtime"))
     assert found is not None
     assert int(found[1].replace(",", "")) == 6000

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from epg import bootstrap
+from epg.generator import bootstrap
 from tests.cmake.project import ROOT, Project
 
 EPG = [str(ROOT / "epg" / "__main__.py"), "targets"]
@@ -47,6 +47,17 @@ def test_packages_are_installed_once_and_found_again(bare_python: Path, tmp_path
     second = run(bare_python, tmp_path, *EPG)
     assert (second.returncode, second.stderr) == (0, "")
     assert second.stdout == first.stdout
+
+
+def test_a_python_whose_path_is_in_a_file_keeps_its_library() -> None:
+    """With a file `._pth`, Python does not put the folder of the started file before the library."""
+    started = (
+        "import runpy, sys; sys.path[:] = [p for p in sys.path if p and 'site-packages' not in p];"
+        f"sys.path.sort(key=lambda p: not p.endswith('python%d.%d' % sys.version_info[:2]));"
+        f"sys.argv = ['epg', '--version']; runpy.run_path({EPG[0]!r}, run_name='__main__')"
+    )
+    done = subprocess.run([sys.executable, "-I", "-S", "-c", started], capture_output=True, text=True, check=False)
+    assert done.stdout.startswith("epg "), done.stderr
 
 
 def test_two_at_once_leave_one_complete_folder(bare_python: Path, tmp_path: Path) -> None:

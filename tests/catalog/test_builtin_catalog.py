@@ -12,16 +12,16 @@ from pathlib import Path
 import pytest
 from jsonschema import Draft202012Validator
 
-from epg.catalog.catalog import FOLDERS, Catalog, load_catalog
-from epg.check.compose import component_schema, typed_parameters
-from epg.check.configuration import check_configuration
-from epg.check.merge import merge_chain
-from epg.data import data_folder, targets_roots
-from epg.diagnostics import Diagnostics
-from epg.documents.schema import validate
-from epg.documents.tcf import load_tcf_chain, predefined_tcf_names, settings_node
-from epg.documents.yaml_file import parse_yaml
-from epg.source import Span
+from epg.generator.catalog.catalog import FOLDERS, Catalog, load_catalog
+from epg.generator.check.compose import component_schema, typed_parameters
+from epg.generator.check.configuration import check_configuration
+from epg.generator.check.merge import merge_chain
+from epg.generator.data import data_folder, targets_roots
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.schema import validate
+from epg.generator.documents.tcf import load_tcf_chain, predefined_tcf_names, settings_node
+from epg.generator.documents.yaml_file import parse_yaml
+from epg.generator.source import Span
 from tests.catalog.everything import read_everything
 
 TARGETS = data_folder("targets")
@@ -41,8 +41,8 @@ def test_everything_is_right() -> None:
     catalog, problems = builtin()
     read_everything(catalog)
     assert [(p.span, p.message) for p in problems] == []
-    folders = {path.name for folder in FOLDERS.values() for path in (TARGETS / folder).iterdir() if path.is_dir()}
-    shared = {"mcu", "common"}  # shared by platforms, and by kinds
+    folders = {path.parent.name for folder in FOLDERS.values() for path in TARGETS.glob(f"{folder}/*/*")}
+    shared = {"common"}  # shared by kinds
     assert {name for category in FOLDERS for name in catalog.names(category)} == folders - shared
 
 
@@ -299,7 +299,7 @@ def test_a_users_folder_comes_first_and_a_missing_one_is_said(tmp_path: Path) ->
 
 def test_only_what_is_asked_for_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
     """A target reads only the files of its board, of the boards that this extends, of chip, platform and family."""
-    from epg.catalog import catalog as module
+    from epg.generator.catalog import catalog as module
 
     read: list[str] = []
     load = module.load_yaml

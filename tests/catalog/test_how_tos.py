@@ -21,16 +21,21 @@ import pytest
 from tests.emulator.toolchain import arm_gcc, pico_sdk, skip_if_missing, tool
 from tests.middlewares.client import Host
 from tests.middlewares.test_console_docs import hold
+from tests.zephyr.workspace import c_library, workspace
+from tests.zephyr.workspace import run as in_workspace
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [
     "adding-a-board",
+    "adding-a-class",
     "adding-a-component-kind",
     "adding-a-family",
     "adding-a-middleware",
     "adding-a-platform",
     "tutorial",
 ]
+CONTINUED = {"adding-a-family": "adding-a-board"}
+"""Pages that begin with the files of another page."""
 NEEDS_PICO_SDK = "<!-- from here on the commands need the Pico SDK -->\n"
 _BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _FILE = re.compile(r"`([^`\s]+)`[^`\n]*:\s*\Z")
@@ -94,7 +99,7 @@ def matches(output: str, expected: str) -> bool:
 def follow(found: list[Step], folder: Path) -> None:
     """Writes the files and runs the commands; each must print the output on the page."""
     if any(step.command.startswith("cmake") for step in found) and not shutil.which("ninja"):
-        pytest.skip("ninja is missing: apt install ninja-build")
+        pytest.skip("Ninja is not installed: sudo apt install ninja-build")
     for step in found:
         if step.path:
             path = folder / step.path
@@ -115,6 +120,8 @@ def read(name: str) -> tuple[str, str]:
 def test_how_to(name: str, tmp_path: Path) -> None:
     found = steps(read(name)[0])
     assert any(step.path for step in found) and any(step.command for step in found)
+    if name in CONTINUED:
+        found = [step for step in steps(read(CONTINUED[name])[0]) if step.path] + found
     follow(found, tmp_path)
 
 
@@ -125,6 +132,33 @@ def test_tutorial_on_a_board(tmp_path: Path) -> None:
     found = steps(board)
     assert [step.command.split()[0] for step in found] == ["cmake", "cmake", "ls"]
     follow([step for step in steps(here) if step.path or step.command.startswith(("epg ", "cp "))] + found, tmp_path)
+
+
+@pytest.mark.parametrize("project", ["pico", "stm32"])
+def test_added_class_on_a_board(project: str, tmp_path: Path) -> None:
+    """The image contains the class's C for the board's port layer, in the memory of the control cycle."""
+    needs = {"pico": (pico_sdk, lambda: tool("picotool")), "stm32": (lambda: tool("cmsis_device_f7"),)}
+    skip_if_missing(arm_gcc, *needs[project])
+    follow([step for step in steps(read("adding-a-class")[0]) if step.path], tmp_path)
+    run(f"cmake -S {project} -B build -DCMAKE_BUILD_TYPE=Release", tmp_path)
+    run("cmake --build build", tmp_path)
+    symbols = run(f"{arm_gcc().with_name('arm-none-eabi-nm')} build/dial_firmware.elf", tmp_path)
+    assert re.search(r"^2\w{7} T analog_input_read$", symbols, re.MULTILINE), "the conversion is not in RAM"
+
+
+def test_added_class_on_zephyr(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Zephyr compiles the class's C by its driver, and the target's code calls it."""
+    follow([step for step in steps(read("adding-a-class")[0]) if step.path], tmp_path)
+    monkeypatch.setenv("EPG_TARGETS_PATH", str(tmp_path / "targets"))
+    skip_if_missing(lambda: workspace("rpi_pico"), c_library)
+    here = workspace("rpi_pico")
+    settings = {"ZEPHYR_MODULES": ";".join(map(str, here.modules)), "EPG_DIR": str(ROOT / "cmake"), **c_library()}
+    options = [f"-D{name}={value}" for name, value in settings.items()]
+    command = ["cmake", "-G", "Ninja", "-S", str(tmp_path / "zephyr"), "-B", str(tmp_path / "build"), *options]
+    in_workspace(command, here)
+    in_workspace(["ninja", "-C", str(tmp_path / "build"), "zephyr/zephyr.elf"], here)
+    symbols = run(f"{arm_gcc().with_name('arm-none-eabi-nm')} build/zephyr/zephyr.elf", tmp_path)
+    assert " T analog_input_read\n" in symbols
 
 
 def test_tutorial_in_real_time(tmp_path: Path) -> None:

@@ -17,10 +17,10 @@ from pathlib import Path
 
 import pytest
 
-from epg.bootstrap import cache_folder
-from epg.catalog.catalog import load_catalog
-from epg.data import targets_roots
-from epg.diagnostics import Diagnostics
+from epg.generator.bootstrap import cache_folder
+from epg.generator.catalog.catalog import load_catalog
+from epg.generator.data import targets_roots
+from epg.generator.diagnostics import Diagnostics
 
 COMMIT = "3d64b1076ac7f0bf0f74acf89b9578b530f37ed7"
 XML = {"": "http://dummy.com"}  # the namespace that ST's files have

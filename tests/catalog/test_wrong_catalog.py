@@ -13,14 +13,14 @@ from typing import Any
 import pytest
 import yaml
 
-from epg.catalog.catalog import FOLDERS, load_catalog
-from epg.check.configuration import check_configuration
-from epg.data import data_folder, targets_roots
-from epg.diagnostics import Diagnostics
-from epg.documents.tcf import load_tcf_chain
-from epg.resolve.allocation import allocate
-from epg.resolve.claims import component_claims, tick_claims
-from tests.catalog.everything import read_everything
+from epg.generator.catalog.catalog import FOLDERS, load_catalog
+from epg.generator.check.configuration import check_configuration
+from epg.generator.data import data_folder, targets_roots
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.tcf import load_tcf_chain
+from epg.generator.resolve.allocation import allocate
+from epg.generator.resolve.claims import component_claims, tick_claims
+from tests.catalog.everything import read_with
 
 FILES = sorted(
     path
@@ -75,7 +75,7 @@ def test_no_change_of_a_file_raises(path: Path, tmp_path: Path) -> None:
         problems = Diagnostics()
         roots = targets_roots([tmp_path])
         catalog = load_catalog(roots, problems)
-        read_everything(catalog)
+        read_with(catalog, path.stem)
         for name in ("rpi_pico2_freertos_jiwy", "host_jiwy"):
             chain = load_tcf_chain(name, roots, problems)
             configuration = check_configuration(chain, [], catalog, problems)

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from epg import dataclass as quick
+from epg.generator import dataclass as quick
 
 
 def made(dataclass: Callable[..., Any]) -> tuple[Any, Any, Any]:

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from epg.check.merge import apply_settings, merge_chain
-from epg.diagnostics import Diagnostics
-from epg.documents.tcf import load_tcf_chain, settings_node
-from epg.source import Span, YamlNode
+from epg.generator.check.merge import apply_settings, merge_chain
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.tcf import load_tcf_chain, settings_node
+from epg.generator.source import Span, YamlNode
 
 
 def merged(folder: Path, name: str, *settings: str) -> YamlNode:

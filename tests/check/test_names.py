@@ -5,7 +5,13 @@ from __future__ import annotations
 
 import pytest
 
-from epg.check.names import absolute_topic, identifier_problem, namespace_problem, node_name_problem, topic_problem
+from epg.generator.check.names import (
+    absolute_topic,
+    identifier_problem,
+    namespace_problem,
+    node_name_problem,
+    topic_problem,
+)
 
 
 @pytest.mark.parametrize("name", ["jiwy", "_a", "A1", "x" * 63])

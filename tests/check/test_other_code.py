@@ -11,11 +11,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from epg.catalog.catalog import load_catalog
 from epg.cli.main import main
-from epg.diagnostics import Diagnostics
-from epg.project import Request, load_hardware
-from epg.resolve.claims import TICK
+from epg.generator.catalog.catalog import load_catalog
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.project import Request, load_hardware
+from epg.generator.resolve.claims import TICK
+from epg.generator.source import Span
 from tests.documents.ioc_texts import ioc_text
 
 ROBOT = """version: 1
@@ -117,9 +118,50 @@ def test_zephyr_has_its_own_priorities_and_clock() -> None:
     assert check(text, ROBOT.replace("freertos", "zephyr"))[1] == [("ioc-clock", "robot.ioc")]  # the core: 480 MHz
 
 
-def test_a_simulation_ignores_the_project() -> None:
+def test_a_simulation_ignores_the_contents_of_the_project() -> None:
     tcf = ROBOT.replace("nucleo_h743zi_freertos", "host")
     assert check(ioc_text(pins={"PE3": "GPIO_Output"}, chip="STM32F429ZITx"), tcf)[1] == []
+
+
+@pytest.mark.parametrize("target", ["host", "nucleo_h743zi_freertos", "rpi_pico_bare_metal"])
+def test_a_file_that_is_no_project_is_an_error_everywhere(target: str) -> None:
+    assert ("ioc-not-cubemx", "robot.ioc") in check("garbage\n", ROBOT.replace("nucleo_h743zi_freertos", target))[1]
+
+
+FIRMWARE = """version: 1
+target: firmware
+node: robot
+clocks: {timers: 64 MHz}
+communication: {middleware: none}
+control: {period: 1 ms}
+components:
+  motor: {kind: pwm, frequency: 20 kHz}
+"""
+
+
+@pytest.mark.parametrize(
+    ("clocks", "written"),
+    [
+        ({"APB1TimFreq": 84, "APB2TimFreq": 168}, "168 MHz"),  # F1, F4, G4, L4
+        ({"APBTimFreq": 64}, "64 MHz"),  # C0, G0; the .tcf has this frequency
+        ({"Tim1OutputFreq": 240, "Tim2OutputFreq": 240, "TimSysFreq": 480}, "240 MHz"),  # H7; the last one is SysTick's
+        ({}, "<frequency>"),
+    ],
+)
+def test_own_drivers_have_no_use_for_a_project(clocks: dict[str, int], written: str, tmp_path: Path) -> None:
+    """The hint is the key of the .tcf that says the same: with it, the program is right."""
+    entries = {f"RCC.{name}_Value": f"{value}000000" for name, value in clocks.items()}
+    (tmp_path / "robot.ioc").write_text(ioc_text(entries, chip="STM32G474RETx"))
+    (tmp_path / "robot.tcf").write_text(FIRMWARE)
+    caller = Span("CMakeLists.txt", 4, 1, 15)
+    problems = Diagnostics()
+    request = Request("robot", "robot.tcf", Path(), Path(), ioc=tmp_path / "robot.ioc", beside=tmp_path, caller=caller)
+    load_hardware(request, load_catalog(request.roots, problems), problems)
+    assert [(item.id, item.span) for item in problems] == [("ioc-own-drivers", caller)]
+    where = "the .tcf already has" if written == "64 MHz" else "write into the .tcf"
+    assert f"{where} 'clocks: {{timers: {written}}}'" in problems.items[0].hint
+    stated = [note for note in problems.items[0].notes if note.span.file.endswith("robot.tcf")]
+    assert [note.span.line for note in stated] == [4]
 
 
 def test_the_option_of_epg_check(

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import pytest
 
-from epg.quantity import QuantityError, conversion_factor, dimension_of, parse_quantity, parse_ratio
+from epg.generator.quantity import QuantityError, conversion_factor, dimension_of, parse_quantity, parse_ratio
 
 
 @pytest.mark.parametrize(

@@ -6,11 +6,11 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from epg.catalog.catalog import Kind, load_catalog
 from epg.cli.main import main
-from epg.data import data_folder
-from epg.diagnostics import Diagnostics
-from epg.documents.schema import load_schema
+from epg.generator.catalog.catalog import Kind, load_catalog
+from epg.generator.data import data_folder
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.schema import load_schema
 
 FILES_PAGE = Path(__file__).resolve().parents[2] / "docs" / "files.md"
 
@@ -59,8 +59,8 @@ def test_a_target_without_control_starts_disabled_at_the_step_of_the_model(tmp_p
     (tmp_path / "robot.tcf").write_text(robot.replace("control: {period: 1 ms, enable_at_start: false}\n", ""))
     described = []
     for tcf in (common / "robot.tcf", tmp_path / "robot.tcf"):
-        command = f"generate robot --tcf {tcf} --model {common / 'model'} --bindings {common / 'bindings.yaml'}"
-        assert main([*command.split(), "--output", str(tmp_path / "out")]) == 0
+        files = ["--tcf", tcf, "--model", common / "model", "--bindings", common / "bindings.yaml"]
+        assert main(["generate", "robot", *map(str, files), "--output", str(tmp_path / "out")]) == 0
         described.append(json.loads((tmp_path / "out" / "robot.json").read_text(encoding="utf-8"))["control"])
     assert described[0] == described[1]
     assert described[1]["enable_at_start"] is False

@@ -4,7 +4,10 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -58,6 +61,41 @@ def test_a_bug_is_status_3_and_says_so(monkeypatch: pytest.MonkeyPatch, capsys: 
     monkeypatch.setattr(epg.cli.targets, "run", fail)
     assert main(["targets"]) == 3
     assert "this is a bug in EPG" in capsys.readouterr().err
+
+
+def test_a_package_that_cannot_be_loaded_is_not_a_bug(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fail(*_: object) -> None:
+        raise ImportError("DLL load failed while importing rpds", name="rpds.rpds")
+
+    monkeypatch.setattr("epg.cli.targets.run", fail)
+    assert main(["targets"]) == 4
+    assert capsys.readouterr().err.startswith("epg: the Python package 'rpds' cannot be used: DLL load failed")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "module 'yaml' has no attribute 'SafeLoader'"),
+        ("raise ImportError('its DLL is missing')", "its DLL is missing"),
+        ("import ctypes\nctypes.CDLL('libnone.so')", "libnone.so: cannot open shared object file"),
+    ],
+)
+def test_a_package_from_pythonpath_is_blamed(robot: Path, tmp_path: Path, text: str, said: str) -> None:
+    package = tmp_path / "shell" / "yaml"
+    package.mkdir(parents=True)
+    (package / "__init__.py").write_text(text + "\n")
+    command = [sys.executable, str(ROOT / "epg"), "check", "--tcf", "robot.tcf", "--model", "model"]
+    command += ["--bindings", "bindings.yaml"]
+    # The tests' own packages stay on the path: a Python without EPG's packages would take them from EPG's cache first.
+    path = os.pathsep.join([str(package.parent), *(entry for entry in sys.path if entry)])
+    environment = {**os.environ, "PYTHONPATH": path}
+    done = subprocess.run(command, capture_output=True, text=True, env=environment, cwd=robot, check=False)
+    assert done.returncode == 4
+    problem, hint = done.stderr.splitlines()
+    assert problem.startswith(f"epg: the Python package 'yaml' cannot be used: {said}")
+    assert hint.startswith("hint: the variable PYTHONPATH has put it in the place of another one: unset PYTHONPATH (")
 
 
 def test_a_folder_that_cannot_be_written_is_status_4(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -281,12 +319,12 @@ def test_bind_writes_what_matches_and_comments_the_rest(robot: Path, capsys: pyt
         "version: 1\n"
         "model: Controller\n"
         "# inputs:    # remove this '#' with the first below it\n"
-        "  # angle:    # no name matches; possible: button, encoder, target\n"
-        "  # go:    # no name matches; possible: button, encoder, target\n"
-        "  # setpoint:    # no name matches; possible: button, encoder, target\n"
+        "  # angle:    # no name matches; possible: encoder, target, button\n"
+        "  # go:    # no name matches; possible: button\n"
+        "  # setpoint:    # no name matches; possible: target, encoder, button\n"
         "outputs:\n"
         "  duty: motor\n"
-        "  # log:    # no name matches; possible: encoder.reset, motor, position\n"
+        "  # log:    # no name matches; possible: position, encoder.reset\n"
         "  reset: encoder.reset\n"
     )
     assert main(["bind", str(JIWY / "model"), "host_jiwy"]) == 0
@@ -322,7 +360,7 @@ model: Controller   # mine
 inputs:
   # the load
   angle: encoder   # rad
-  # go:    # no name matches; possible: button, encoder, target
+  # go:    # no name matches; possible: button
   # old:   # no longer a port of the model
   #   from: button
   #   scale: 2
@@ -370,9 +408,9 @@ outputs:
     reset: encoder.reset
 inputs: {}
     # gone: motor   # no longer a port of the model
-    # angle:    # no name matches; possible: button, encoder, target
-    # go:    # no name matches; possible: button, encoder, target
-    # setpoint:    # no name matches; possible: button, encoder, target
+    # angle:    # no name matches; possible: encoder, target, button
+    # go:    # no name matches; possible: button
+    # setpoint:    # no name matches; possible: target, encoder, button
 parameters: {}""",
     ),
     "a section that is missing": (
@@ -385,9 +423,9 @@ outputs: {log: position, gone: motor}
 version: 1
 model: Controller
 # inputs:    # remove this '#' with the first below it
-  # angle:    # no name matches; possible: button, encoder, target
-  # go:    # no name matches; possible: button, encoder, target
-  # setpoint:    # no name matches; possible: button, encoder, target
+  # angle:    # no name matches; possible: encoder, target, button
+  # go:    # no name matches; possible: button
+  # setpoint:    # no name matches; possible: target, encoder, button
 outputs: {duty: motor, log: position, reset: encoder.reset}
   # gone: motor   # no longer a port of the model
 """,
@@ -448,8 +486,38 @@ def test_null_deletes_any_key_of_an_extended_file(robot: Path, capsys: pytest.Ca
     assert "unknown key 'namspace'" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        ("build", "cmake -S . -B build, then cmake --build build"),
+        ("init", "'epg new' writes a project"),
+        ("genrate", "did you mean 'generate'?"),
+    ],
+)
+def test_a_word_that_is_not_a_command_names_what_to_do(
+    command: str, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([command, "robot"]) == 2
+    assert f"epg: error: there is no command '{command}' (" in (text := capsys.readouterr().err)
+    assert said in text
+
+
 def test_a_misspelt_option_gets_the_usage_of_its_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", "--modell", "servo"]) == 2
     said = capsys.readouterr().err
     assert said.startswith("usage: epg check ")
     assert "epg check: error: unrecognized arguments: --modell (did you mean '--model'?)" in said
+
+
+@pytest.mark.parametrize("id", ["unbound-input", "[unbound-input]"])
+def test_explain_explains_a_message_without_a_build(
+    id: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["explain", id]) == 0
+    said = capsys.readouterr().out
+    assert said.startswith("An input of the model is not bound.") and "[unbound-input]\n" in said
+    assert main(["explain", "--json", id]) == 0
+    assert json.loads(capsys.readouterr().out)["id"] == "unbound-input"
+    assert main(["explain", "timer-used-twice"]) == 0
+    assert "](" not in capsys.readouterr().out

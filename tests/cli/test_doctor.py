@@ -225,7 +225,7 @@ def test_packages_that_are_missing(bare: Path) -> None:
 def test_packages_of_the_cache_count(
     bare: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from epg import bootstrap
+    from epg.generator import bootstrap
 
     real = bootstrap.requirements
     others = {"plot": {"plotpackage": ("plotpackage", (1, 2))}}

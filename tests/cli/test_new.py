@@ -10,17 +10,18 @@ import shutil
 import signal
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 import epg
 from epg.cli.main import main
-from epg.data import targets_roots
-from epg.diagnostics import Diagnostics
-from epg.documents.yaml_file import load_yaml
-from epg.emit.folder import write_folder
-from epg.tools.tools import load_tools
+from epg.generator.data import targets_roots
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.yaml_file import load_yaml
+from epg.generator.emit.folder import write_folder
+from epg.generator.tools.tools import load_tools
 from tests.cmake.project import snapshot
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -54,10 +55,26 @@ def check(folder: Path, name: str, model: str = "model") -> int:
     return main(["check", *files, "--model", str(folder / model)])
 
 
+@pytest.fixture(scope="module")
+def projects(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """The project for a target, which is written once."""
+    written: dict[str, Path] = {}
+
+    def project(target: str) -> Path:
+        if target not in written:
+            folder = tmp_path_factory.mktemp("project") / "robot"
+            assert new(folder, target) == 0
+            written[target] = folder
+        return written[target]
+
+    return project
+
+
 @pytest.mark.parametrize("target", TARGETS)
-def test_a_project_is_complete_and_right(target: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    folder = tmp_path / "robot"
-    assert new(folder, target) == 0
+def test_a_project_is_complete_and_right(
+    target: str, projects: Callable[[str], Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = projects(target)
     assert "to bind" not in capsys.readouterr().out
     assert check(folder, "robot") == 0
     assert capsys.readouterr() == ("no errors\n", "")
@@ -75,14 +92,13 @@ def test_a_project_is_complete_and_right(target: str, tmp_path: Path, capsys: py
 
 
 @pytest.mark.parametrize("target", TARGETS)
-def test_enabling_is_for_people(target: str, tmp_path: Path) -> None:
+def test_enabling_is_for_people(target: str, projects: Callable[[str], Path]) -> None:
     """For any configuration of the robot: a new project does not move anything without a command of the user."""
-    from epg.catalog.catalog import load_catalog
-    from epg.new_project import ProjectRequest
-    from epg.project import Request, load_configuration
+    from epg.generator.catalog.catalog import load_catalog
+    from epg.generator.project import Request, load_configuration
+    from epg.new.new_project import ProjectRequest
 
-    folder = tmp_path / "robot"
-    assert new(folder, target) == 0
+    folder = projects(target)
     request = ProjectRequest(None, folder, target, JIWY)
     catalog = load_catalog(request.roots, Diagnostics())
     found = load_configuration(Request("robot", str(folder / "robot.tcf"), JIWY, JIWY), catalog, Diagnostics())
@@ -315,7 +331,9 @@ def test_ports_with_names_of_epgs_own(tmp_path: Path, capsys: pytest.CaptureFixt
         (model / name).write_text(text)
     assert new(tmp_path / "robot", "rpi_pico_freertos", model) == 0
     output = capsys.readouterr()
-    assert output.err == ""
+    assert set(re.findall(r": (error|warning|note): .* \[(.*)\]$", output.err, re.MULTILINE)) == {
+        ("note", "setpoint-without-unit")
+    }
     assert "to bind" not in output.out
     assert "  level: {kind: ros_subscriber, topic: level, type: int32}\n" in (tmp_path / "robot/robot.tcf").read_text()
     assert "  on: {kind: ros_subscriber, topic: on, type: bool}\n" in (tmp_path / "robot/robot.tcf").read_text()
@@ -368,7 +386,7 @@ def test_the_next_run_removes_what_a_killed_one_has_left(present: bool, tmp_path
         (folder / "notes.txt").write_text("mine")
     before = snapshot(tmp_path)
     killed = (
-        "import os, signal\nfrom pathlib import Path\nfrom epg.emit import folder\n"
+        "import os, signal\nfrom pathlib import Path\nfrom epg.generator.emit import folder\n"
         "folder._move = os.rename = lambda *_: os.kill(os.getpid(), signal.SIGKILL)\n"
         f"folder.write_folder(Path({str(folder)!r}), {{'a': b'1'}})\n"
     )
@@ -520,13 +538,13 @@ def test_the_examples_in_a_fresh_configuration_are_right(target: str, tmp_path: 
 
 
 @pytest.mark.parametrize("target", TARGETS)
-def test_the_readme_names_files_that_are_there(target: str, tmp_path: Path) -> None:
-    assert new(tmp_path / "robot", target) == 0
-    readme = (tmp_path / "robot/README.md").read_text()
+def test_the_readme_names_files_that_are_there(target: str, projects: Callable[[str], Path]) -> None:
+    folder = projects(target)
+    readme = (folder / "README.md").read_text()
     table = re.findall(r"^\| (`.+?) \|", readme, re.M)
     assert len(table) >= 6
     for name in re.findall(r"`([^`]+)`", " ".join(table)):
-        assert (tmp_path / "robot" / name).exists(), name
+        assert (folder / name).exists(), name
     for line in readme.splitlines():
         assert len(line) <= 130, line
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from epg.cli.main import main
-from epg.diagnostics import Diagnostics
+from epg.generator.diagnostics import Diagnostics
 from epg.simulate import load_scenario
 from tests.cmake.project import ROOT, snapshot
 

@@ -20,7 +20,7 @@ FILES = ["--tcf", "robot.tcf", "--model", "model", "--bindings", "bindings.yaml"
 
 _MESSAGE = {"type": "object", "properties": {"text": {"type": "string", "minLength": 1}}, "required": ["text"]}
 _POSITIVE = {"type": "integer", "minimum": 1}
-_LOCATION = {
+_LOCATION: dict[str, Any] = {
     "type": "object",
     "properties": {
         "id": {"type": "integer", "minimum": 0},
@@ -36,7 +36,7 @@ _LOCATION = {
                 },
                 "region": {
                     "type": "object",
-                    "properties": {"startLine": _POSITIVE, "startColumn": _POSITIVE, "endColumn": _POSITIVE},
+                    "properties": dict.fromkeys(("startLine", "startColumn", "endLine", "endColumn"), _POSITIVE),
                     "required": ["startLine"],
                     "additionalProperties": False,
                 },
@@ -46,6 +46,39 @@ _LOCATION = {
         },
         "logicalLocations": {"type": "array", "minItems": 1},
     },
+    "additionalProperties": False,
+}
+_FIX = {
+    "type": "object",
+    "properties": {
+        "description": _MESSAGE,
+        "artifactChanges": {
+            "type": "array",
+            "minItems": 1,
+            "items": {
+                "type": "object",
+                "properties": {
+                    "artifactLocation": _LOCATION["properties"]["physicalLocation"]["properties"]["artifactLocation"],
+                    "replacements": {
+                        "type": "array",
+                        "minItems": 1,
+                        "items": {
+                            "type": "object",
+                            "properties": {
+                                "deletedRegion": _LOCATION["properties"]["physicalLocation"]["properties"]["region"],
+                                "insertedContent": _MESSAGE,
+                            },
+                            "required": ["deletedRegion"],
+                            "additionalProperties": False,
+                        },
+                    },
+                },
+                "required": ["artifactLocation", "replacements"],
+                "additionalProperties": False,
+            },
+        },
+    },
+    "required": ["artifactChanges"],
     "additionalProperties": False,
 }
 SARIF = {
@@ -102,6 +135,7 @@ SARIF = {
                                 "message": _MESSAGE,
                                 "locations": {"type": "array", "items": _LOCATION},
                                 "relatedLocations": {"type": "array", "items": _LOCATION},
+                                "fixes": {"type": "array", "minItems": 1, "items": _FIX},
                             },
                             "required": ["message", "ruleId", "level", "locations"],
                             "additionalProperties": False,
@@ -116,7 +150,7 @@ SARIF = {
     "required": ["version", "runs"],
     "additionalProperties": False,
 }
-"""The requirements of SARIF 2.1.0 (3.13 to 3.30, 3.49) on the parts of a log that EPG writes, and on no others."""
+"""The requirements of SARIF 2.1.0 (3.13 to 3.30, 3.49, 3.55 to 3.57) on the parts of a log that EPG writes."""
 
 
 @pytest.fixture
@@ -170,6 +204,22 @@ def test_errors_have_places_rules_and_status_1(robot: Path, capsys: pytest.Captu
             }
         }
     ]
+    assert result["fixes"] == [
+        {
+            "description": {"text": "did you mean 'period'?"},
+            "artifactChanges": [
+                {
+                    "artifactLocation": {"uri": "robot.tcf"},
+                    "replacements": [
+                        {
+                            "deletedRegion": {"startLine": 4, "startColumn": 11, "endColumn": 16},
+                            "insertedContent": {"text": "period"},
+                        }
+                    ],
+                }
+            ],
+        }
+    ]
     (rule,) = run["tool"]["driver"]["rules"]
     entry = find_entry("unknown-key")
     assert entry is not None
@@ -214,9 +264,36 @@ def test_files_elsewhere_and_odd_names(
     assert uris == {"my%20robots/%C3%A9%3A%20100%25.tcf", other.as_uri()}
 
 
+def test_lines_to_insert_are_fixes(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """One region of no length; several fixes if the user must choose; a region of several lines."""
+    change(robot / "bindings.yaml", "  log: position\n", "")
+    bound = "inputs:\n  angle: encoder\n  go: button\n  setpoint: target\n"
+    possible = "no name matches; possible: encoder"
+    change(
+        robot / "bindings.yaml",
+        bound,
+        f"# inputs:    # remove this '#' with the first below it\n  # angle:    # {possible}\n",
+    )
+    assert main(["check", "--format=sarif", *FILES]) == 1
+    fixes = {result["message"]["text"].split("'")[1]: result.get("fixes", ()) for result in sarif(capsys)["results"]}
+    changes = {
+        name: [(fix["description"]["text"], *fix["artifactChanges"][0]["replacements"]) for fix in listed]
+        for name, listed in fixes.items()
+    }
+    region = {"startLine": 6, "startColumn": 14, "endColumn": 14}
+    assert changes["log"] == [
+        (f"write 'log: {end}'", {"deletedRegion": region, "insertedContent": {"text": f"\n  log: {end}"}})
+        for end in ("position", "unconnected")
+    ]
+    region = {"startLine": 3, "startColumn": 1, "endLine": 4, "endColumn": len(f"  # angle:    # {possible}") + 1}
+    (changed,) = changes["angle"]
+    assert changed[1] == {"deletedRegion": region, "insertedContent": {"text": "inputs:\n  angle: encoder"}}
+
+
 def test_a_value_of_the_command_line_is_in_no_file(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", "--format=sarif", *FILES, "--set", "control.perod=1 ms"]) == 1
     (result,) = sarif(capsys)["results"]
+    assert "fixes" not in result, "a fix must change a file"
     assert result["locations"] == [
         {"logicalLocations": [{"fullyQualifiedName": "control.perod=1 ms", "kind": "parameter"}]}
     ]
@@ -242,3 +319,38 @@ def test_the_other_formats(robot: Path, capsys: pytest.CaptureFixture[str]) -> N
     assert main(["check", "--format=xml", *FILES]) == 2
     assert main(["check", "--format=sarif"]) == 2
     assert capsys.readouterr().out == ""
+
+
+def test_edits_are_in_the_json(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """An edit of a file, of a part of a value in quotes, and of an argument; a new line; none without a proposal."""
+    change(robot / "robot.tcf", "period: 1 ms", "perid: 1 ms")
+    change(robot / "bindings.yaml", "reset: encoder.reset", 'reset: "encoder.rest"')
+    assert main(["check", "--format=json", *FILES]) == 1
+    edits = {each["id"]: each["edits"] for each in json.loads(capsys.readouterr().out)["diagnostics"]}
+    assert edits["unknown-key"] == [{
+        "file": "robot.tcf", "line": 4, "column": 11, "end_line": 4, "end": 16, "old": "perid", "new": "period",
+        "sentence": "did you mean 'period'?",
+    }]  # fmt: skip
+    change(robot / "robot.tcf", "perid: 1 ms", "period: 1 ms")
+    assert main(["check", "--format=json", *FILES, "--set", "control.perod=1 ms"]) == 1
+    (found,) = json.loads(capsys.readouterr().out)["diagnostics"]
+    assert found["edits"] == [{
+        "file": "command line", "line": 1, "column": 9, "end_line": 1, "end": 14, "old": "perod", "new": "period",
+        "sentence": "did you mean 'period'?", "argument": "control.period=1 ms",
+    }]  # fmt: skip
+    assert main(["check", "--format=json", *FILES]) == 1
+    (found,) = json.loads(capsys.readouterr().out)["diagnostics"]
+    (edit,) = found["edits"]
+    assert edit["new"] == "reset" and edit["column"] == found["column"] + len('"encoder.')
+    change(robot / "bindings.yaml", '"encoder.rest"', "motor")
+    assert main(["check", "--format=json", *FILES]) == 1
+    assert all(each["edits"] == [] for each in json.loads(capsys.readouterr().out)["diagnostics"])
+    change(robot / "bindings.yaml", "reset: motor", "reset: encoder.reset")
+    change(robot / "bindings.yaml", "  go: button\n", "")
+    change(robot / "bindings.yaml", "  setpoint: target\n", "")
+    assert main(["check", "--format=json", *FILES]) == 1
+    edits = {each["message"]: each["edits"] for each in json.loads(capsys.readouterr().out)["diagnostics"]}
+    assert edits["model input 'setpoint' is not bound"] == [{
+        "file": "bindings.yaml", "line": 4, "column": 17, "end_line": 4, "end": 17, "old": "",
+        "new": "\n  setpoint: target", "sentence": "add 'inputs: {setpoint: target}'",
+    }]  # fmt: skip

@@ -12,13 +12,14 @@ from typing import Any
 import jsonschema
 import pytest
 
-from epg.catalog.catalog import load_catalog
-from epg.check.editor import TARGET_FILES, USER_FILES, editor_schema
 from epg.cli.main import main
-from epg.data import targets_roots
-from epg.diagnostics import Diagnostics
-from epg.documents.yaml_file import load_yaml
-from epg.quantity import SPELLINGS, UNITS, QuantityError, parse_quantity, parse_ratio
+from epg.cli.schema import write_editor_schemas
+from epg.generator.catalog.catalog import load_catalog
+from epg.generator.check.editor_schemas import TARGET_FILES, USER_FILES, editor_schema
+from epg.generator.data import targets_roots
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.yaml_file import load_yaml
+from epg.generator.quantity import SPELLINGS, UNITS, QuantityError, parse_quantity, parse_ratio
 from tests.errors.test_errors import CASES, COMMAND, lay_out, read_case
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -78,12 +79,11 @@ def test_schemas_are_of_the_part_that_editors_understand(name: str) -> None:
             )
 
 
-@pytest.mark.parametrize("name", USER_FILES)
-def test_the_schemas_that_ship_are_current(name: str) -> None:
-    """After a change of kinds, boards, platforms or schemas: ``python epg schema ... --folder schemas/editor``."""
-    command = f"python epg schema {' '.join(USER_FILES)} --folder schemas/editor"
-    shipped = json.loads((EDITOR / f"{name}.schema.json").read_text(encoding="utf-8"))
-    assert shipped == SCHEMAS[name], f"renew it: {command}"
+def test_the_schemas_of_a_wheel_have_epgs_own_kinds_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("EPG_TARGETS_PATH", str(tmp_path / "of the user"))
+    write_editor_schemas(tmp_path / "schemas")
+    written = {path.name: json.loads(path.read_text(encoding="utf-8")) for path in (tmp_path / "schemas").iterdir()}
+    assert written == {f"{name}.schema.json": SCHEMAS[name] for name in USER_FILES}
 
 
 @pytest.mark.parametrize("path", sorted(ROOT.glob("targets/robots/*/*.tcf")), ids=lambda path: path.name)
@@ -147,7 +147,7 @@ def test_editors_refuse_what_epg_refuses(case: Path, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("dimension", sorted({dimension for dimension, _ in UNITS.values()} - {"ratio"}))
 def test_quantities_are_those_that_epg_reads(dimension: str) -> None:
-    from epg.check.editor import _quantity_form
+    from epg.generator.check.editor_schemas import _quantity_form
 
     form = re.compile(_quantity_form(dimension, "[-+]?"))
     for number in ("1", "-1.5", "+.5", "2.", "1e3", "1E-3", "1_0", "", "0x1", "1,5"):
@@ -163,7 +163,7 @@ def test_quantities_are_those_that_epg_reads(dimension: str) -> None:
 
 @pytest.mark.parametrize("text", ["5625/361", "-1 / 2", " 1.5/2e3 ", "1/", "1/2/3", "a/b", "1", "+1/-2"])
 def test_ratios_are_those_that_epg_reads(text: str) -> None:
-    from epg.check.editor import _ratio_form
+    from epg.generator.check.editor_schemas import _ratio_form
 
     try:
         parse_ratio(text)

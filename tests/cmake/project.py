@@ -42,7 +42,7 @@ class Project:
         """Configures; returns the whole output.  Without ``generator``: Ninja if it is installed, else Make."""
         generator = generator or ("Ninja" if NINJA else "Unix Makefiles")
         if generator.startswith("Ninja") and not NINJA:
-            pytest.skip("Ninja is not installed: apt install ninja-build")
+            pytest.skip("Ninja is not installed: sudo apt install ninja-build")
         command = ["cmake", "-S", str(self.source), "-B", str(self.build_folder), "-G", generator, *arguments]
         command += [f"-DPython3_EXECUTABLE={sys.executable}"] if not any("Python3_" in a for a in arguments) else []
         command += [f"-DEPG_DIR={CMAKE_DIR}"] if epg_dir else []

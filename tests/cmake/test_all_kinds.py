@@ -16,7 +16,7 @@ SETPOINTS = """time,topic,value
 0.05,speed,57.29577951308232
 0.05,/level,1
 0.10,arm,1
-0.15,/level,4
+0.15,/level,3
 0.20,arm,0
 0.3,/level,100
 """
@@ -73,6 +73,10 @@ def test_a_topic_of_truth_values_feeds_a_boolean_input(run) -> None:  # type: ig
 def test_conversions_on_component_and_wire(run) -> None:  # type: ignore[no-untyped-def]
     assert at(run, 0.1, "inputs.level") == (3 * 1 + 1) / 4 - 0.5
     assert at(run, 0.2, "inputs.level") == 10 / 4 - 0.5
+    assert at(run, 0.35, "inputs.level") == 10 / 4 - 0.5, (
+        "a value outside of the limits of component and wire is refused"
+    )
+    assert run[1]["setpoints_dropped"] == 1
     assert at(run, 0.2, "inputs.offset") == -2.5
     assert run[1]["clamped"] > 0
 

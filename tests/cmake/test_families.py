@@ -34,7 +34,7 @@ TOOL = {
 }
 PROJECT = """
 cmake_minimum_required(VERSION 3.22...3.31)
-include(%s/epg_import.cmake)
+include("%s/epg_import.cmake")
 epg_use_versions(MOTOR_SDK ${wanted})
 epg_import_motor_sdk()
 project(x LANGUAGES NONE)

@@ -15,7 +15,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 
 pytestmark = pytest.mark.skipif(
-    not (shutil.which("cmake") and shutil.which("git")), reason="cmake or git is missing: apt install cmake git"
+    not (shutil.which("cmake") and shutil.which("git")),
+    reason="CMake or git is not installed: sudo apt install cmake git",
 )
 
 

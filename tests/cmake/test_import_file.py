@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from epg.install import ACTIVATE, install_command
+from epg.generator.install import ACTIVATE, install_command
 from tests.cmake.project import CMAKE_DIR
 
 PROJECT = """cmake_minimum_required(VERSION 3.22...3.31)
@@ -198,6 +198,25 @@ def test_a_workspace_without_epg(user: User) -> None:
     user.program("python3", installed, "-m epg --cmake-dir")
     user.program("west_python", installed, "no such project")
     assert f"EPG of {installed}/cmake\n" in user.configure(f"-DWEST_PYTHON={user.programs / 'west_python'}")
+
+
+@pytest.mark.parametrize("variable", ["ZEPHYR_MODULES", "EXTRA_ZEPHYR_MODULES", "ZEPHYR_EXTRA_MODULES"])
+@pytest.mark.parametrize("way", ["command line", "environment", "sysbuild"])
+def test_a_module_of_zephyr(user: User, variable: str, way: str) -> None:
+    """Without a west manifest, a variable lists the modules; another one is before EPG."""
+    module = user.checkout("modules/epg")
+    user.program("python3", user.checkout("installed"), "-m epg --cmake-dir")
+    modules = f"{user.folder}/other;{module}"
+    cache = user.folder / "sysbuild_cache.txt"
+    cache.write_text(f"{variable}:STRING={modules}\nBOARD:STRING=rpi_pico\n" if way == "sysbuild" else "")
+    output = user.configure(
+        *([f"-D{variable}={modules}"] if way == "command line" else []),
+        "-DSYSBUILD:BOOL=True",
+        f"-DSYSBUILD_CACHE:FILEPATH={cache}",
+        variables={variable: modules} if way == "environment" else {},
+    )
+    assert f"EPG of {module}/cmake\n" in output
+    assert f"EPG of {user.checkout('path')}/cmake\n" in user.configure(f"-DEPG_PATH={user.folder / 'path'}")
 
 
 def test_an_image_of_sysbuild(user: User) -> None:

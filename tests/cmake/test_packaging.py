@@ -10,9 +10,8 @@ import tarfile
 import zipfile
 from pathlib import Path
 
-import pytest
-
 from epg.connect.server import TYPES
+from epg.generator.check.editor_schemas import USER_FILES
 from tests.cmake.project import ROOT, Project
 from tests.connect.started import started
 
@@ -26,34 +25,6 @@ TREES = (
     "examples/jiwy",
     "examples/relbot/plant",
 )
-
-
-@pytest.fixture(scope="module")
-def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """EPG's wheel, made from the checkout."""
-    folder = tmp_path_factory.mktemp("wheel")
-    code = (
-        "import sys; from hatchling.builders.wheel import WheelBuilder;"
-        "print(next(WheelBuilder(sys.argv[1]).build(directory=sys.argv[2], versions=['standard'])))"
-    )
-    subprocess.run([sys.executable, "-c", code, str(ROOT), str(folder)], check=True, capture_output=True)
-    (found,) = folder.glob("*.whl")
-    return found
-
-
-@pytest.fixture(scope="module")
-def prefix(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """An installation of the wheel, in the folders that pip uses."""
-    folder = tmp_path_factory.mktemp("prefix")
-    site = folder / f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages"
-    with zipfile.ZipFile(wheel) as archive:
-        for name in archive.namelist():
-            _, data, rest = name.partition(".data/data/")
-            target = folder / rest if data else site / name
-            if not name.endswith("/"):
-                target.parent.mkdir(parents=True, exist_ok=True)
-                target.write_bytes(archive.read(name))
-    return folder
 
 
 def test_the_wheel_holds_the_same_files_as_the_checkout(wheel: Path) -> None:
@@ -70,8 +41,10 @@ def test_the_wheel_holds_the_same_files_as_the_checkout(wheel: Path) -> None:
         assert archive.read("epg/_data/docs/errors.md") == (ROOT / "docs/errors.md").read_bytes()
     assert {name.split("/")[2] for name in names if "epg/_data/" in name} == {*(t.split("/")[0] for t in TREES), "docs"}
     assert [name for name in names if not name.startswith(("epg/", "epg-")) or "__pycache__" in name] == []
-    assert [name for name in names if name.startswith(("epg/lock/test", "epg/lock/dev"))] == []
-    assert {"epg/__main__.py", "epg/emit/templates/app.c.j2", "epg/lock/generator.txt"} <= names
+    assert [name for name in names if name.startswith(("epg/generator/lock/test", "epg/generator/lock/dev"))] == []
+    editor = "epg/_data/schemas/editor/"
+    assert {name for name in names if name.startswith(editor)} == {f"{editor}{name}.schema.json" for name in USER_FILES}
+    assert {"epg/__main__.py", "epg/generator/emit/templates/app.c.j2", "epg/generator/lock/generator.txt"} <= names
     assert any(name.endswith(".data/data/share/EPG/cmake/EPGConfig.cmake") for name in names)
 
 

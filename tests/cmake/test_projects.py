@@ -4,11 +4,14 @@
 from __future__ import annotations
 
 import json
+import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
+from epg.generator.check.editor_schemas import USER_FILES
 from tests.cmake.project import CMAKE_DIR, ROOT, Project, compiled, snapshot
 
 
@@ -28,35 +31,25 @@ def test_configure_build_run(robot: Project, generator: str) -> None:
     assert snapshot(robot.source) == before, "EPG wrote into the source tree"
 
 
-def test_a_build_without_a_change_compiles_nothing(robot: Project) -> None:
+def test_a_build_without_a_change_and_a_comment_in_the_tcf_compile_nothing(robot: Project) -> None:
     robot.configure()
     robot.build()
     assert compiled(robot.build()) == set()
     robot.configure()
     assert compiled(robot.build()) == set()
-
-
-def test_a_comment_in_the_tcf_compiles_nothing(robot: Project) -> None:
-    robot.configure()
-    robot.build()
     robot.edit("robot.tcf", "# A motor", "# The motor\n# and its load: a motor")
     output = robot.build()
     assert "Re-running CMake" in output or "Configuring done" in output
     assert compiled(output) == set()
 
 
-def test_a_changed_value_is_noticed_and_compiles_the_tables_only(robot: Project) -> None:
+def test_a_changed_value_compiles_the_tables_only_and_a_changed_model_is_noticed(robot: Project) -> None:
     robot.configure(generator="Ninja")  # Make prints less about compiled files
     robot.build()
     robot.edit("robot.tcf", "counts_per_revolution: 4096", "counts_per_revolution: 2048")
     assert "robot_app.c" in compiled(robot.build())
     robot.edit("robot.tcf", "node: robot", "node: robot2")
     assert compiled(robot.build()) == {"robot_app.c", "robot_version.c"}
-
-
-def test_a_changed_model_is_noticed(robot: Project) -> None:
-    robot.configure(generator="Ninja")  # Make prints less about compiled files
-    robot.build()
     robot.edit("model/controller.c", "outputs->reset = 0.0", "outputs->reset = 1.0")
     assert "controller.c" in compiled(robot.build())
     robot.edit("model/model.yaml", "log: {unit: rad}", "log: {unit: deg}")
@@ -156,6 +149,9 @@ def test_a_wrong_setting_names_the_cmakelists(tmp_path: Path) -> None:
         ("MODEL model", "MODEL model PINS x", "epg_add_target(robot): unknown argument: PINS"),
         ("BINDINGS bindings.yaml", "BINDINGS", "this keyword has no value: BINDINGS"),
         ("MODEL model", "MODLE model", "Usage: epg_add_target(<name> TCF <file> MODEL <folder> BINDINGS <file>"),
+        ("TCF robot.tcf", "tcf robot.tcf", "Write 'TCF <value>': keywords are in capitals"),
+        ("TCF robot.tcf", "TCF=robot.tcf", "Write 'TCF <value>': keywords are in capitals"),
+        ("robot TCF", "robot, TCF", "CMake separates arguments by blanks: remove the commas"),
         ("robot TCF", "TCF", "epg_add_target(TCF ...): the first argument must be a name."),
         ("BINDINGS bindings.yaml", "BINDINGS bindings.yaml PLANT plant", "PLANT needs PLANT_BINDINGS"),
         ("LANGUAGES C", "LANGUAGES NONE", "EPG needs C: write project(robot LANGUAGES"),
@@ -183,6 +179,44 @@ def test_the_version_is_the_packages(robot: Project) -> None:
     assert f"is {epg.__version__}\n" in robot.configure()
     robot.edit("CMakeLists.txt", "find_package(EPG REQUIRED)", "find_package(EPG 99 REQUIRED)")
     assert "compatible with requested version" in " ".join(robot.fails_to_configure().split())
+
+
+def copied_checkout(folder: Path) -> Path:
+    """A copy of EPG without its tests, of which its CMakeLists.txt registers none."""
+    unneeded = shutil.ignore_patterns("__pycache__", "editor")
+    for tree in ("cmake", "epg", "schemas", "targets"):
+        shutil.copytree(ROOT / tree, folder / tree, ignore=unneeded)
+    (folder / "tests").mkdir()
+    (folder / "tests/CMakeLists.txt").write_text("")
+    shutil.copy(ROOT / "CMakeLists.txt", folder)
+    return folder
+
+
+def configure(checkout: Path, build: Path) -> None:
+    command = ["cmake", "-S", checkout, "-B", build, f"-DPython3_EXECUTABLE={sys.executable}"]
+    subprocess.run(command, check=True, capture_output=True)
+
+
+def test_the_first_configuration_of_a_checkout_writes_the_schemas_for_editors(tmp_path: Path) -> None:
+    checkout = copied_checkout(tmp_path / "checkout")
+    configure(checkout, tmp_path / "build")
+    written = {path.name for path in (checkout / "schemas/editor").iterdir()}
+    assert written == {f"{name}.schema.json" for name in USER_FILES}
+
+
+def test_a_checkout_that_cannot_be_written_is_configured(tmp_path: Path) -> None:
+    checkout = copied_checkout(tmp_path / "checkout")
+    (checkout / "schemas").chmod(0o500)
+    shutil.rmtree(checkout / "epg/cli")  # root may write everywhere, so the command fails for another reason, too
+    configure(checkout, tmp_path / "build")
+    assert not (checkout / "schemas/editor").exists()
+
+
+def test_nothing_is_written_into_a_submodule(robot: Project, tmp_path: Path) -> None:
+    checkout = copied_checkout(tmp_path / "checkout")
+    robot.edit("CMakeLists.txt", "find_package(EPG REQUIRED)", f'add_subdirectory("{checkout}" epg_checkout)')
+    robot.configure(epg_dir=False)
+    assert not (checkout / "schemas/editor").exists()
 
 
 def test_add_subdirectory(robot: Project) -> None:

@@ -31,6 +31,11 @@ class Surroundings:
 
 
 USUAL = Surroundings("usual", {"PYTHONHASHSEED": "1", "LC_ALL": "C.UTF-8", "TZ": "UTC"})
+ALL = {
+    "PYTHONHASHSEED": "random", "TZ": "Asia/Kathmandu", "HOME": "/nonexistent", "XDG_CACHE_HOME": "",
+    "COLUMNS": "20", "NO_COLOR": "1", "TERM": "dumb",
+}  # fmt: skip
+ALL_FOLDERS = {"folder": "a folder with blanks/für/mich", "epg": "some where/else"}
 OTHERS = (
     Surroundings("another folder", folder="a folder with blanks/and ümlauts/project"),
     Surroundings("another folder of EPG", epg="some where/else"),
@@ -45,7 +50,13 @@ OTHERS = (
     Surroundings("another home", {"HOME": "/nonexistent", "XDG_CACHE_HOME": ""}),
     Surroundings("another terminal", {"COLUMNS": "20", "NO_COLOR": "1", "TERM": "dumb"}),
     Surroundings("a release build with Makefiles", arguments=("-G", "Unix Makefiles", "-DCMAKE_BUILD_TYPE=Release")),
-)
+    Surroundings("all at once", {**ALL, "LC_ALL": "C", "PYTHONUTF8": "0"}, **ALL_FOLDERS, umask=0o077),
+    Surroundings(
+        "all at once in Turkish", {**ALL, "LC_ALL": "tr_TR.UTF-8"}, **ALL_FOLDERS, umask=0o077, locale="tr_TR.utf8",
+        arguments=("-G", "Unix Makefiles", "-DCMAKE_BUILD_TYPE=Release"),
+    ),
+)  # fmt: skip
+"""`check_all` has the last two.  They differ from the usual surroundings in all that the others differ in singly."""
 
 CMAKELISTS = """cmake_minimum_required(VERSION 3.22...3.31)
 project(surroundings LANGUAGES C CXX)

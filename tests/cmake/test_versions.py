@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -66,3 +67,31 @@ def test_the_checkout_of_an_editable_install_has_gone(tmp_path: Path) -> None:
     assert done.returncode != 0
     expected = "the checkout of an editable installation was moved or deleted: there is no /gone/cmake/EPGConfig.cmake"
     assert expected in " ".join(done.stderr.split())
+
+
+@pytest.mark.parametrize("way", ["add_subdirectory", "find_package"])
+def test_two_in_one_build_are_an_error(way: str, tmp_path: Path) -> None:
+    """Each of two projects brings its own EPG."""
+    for name in ("CMakeLists.txt", "cmake", "targets", "epg/__init__.py"):
+        file = tmp_path / "two/epg" / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        if (ROOT / name).is_dir():
+            shutil.copytree(ROOT / name, file)
+        else:
+            text = (ROOT / name).read_text(encoding="utf-8")
+            file.write_text(text.replace(f'__version__ = "{HERE}"', f'__version__ = "{NEXT}"'), encoding="utf-8")
+    (tmp_path / "one").mkdir()
+    (tmp_path / "link").symlink_to(ROOT)  # the same EPG under another name is no second one
+    texts = {
+        ".": "project(both LANGUAGES NONE)\nadd_subdirectory(one)\nadd_subdirectory(two)\n",
+        "one": f'add_subdirectory("{ROOT}" epg)\nset(EPG_DIR "{tmp_path}/link/cmake")\nfind_package(EPG REQUIRED)\n',
+        "two": "add_subdirectory(epg)\n"
+        if way == "add_subdirectory"
+        else f'set(EPG_DIR "{tmp_path}/two/epg/cmake")\nfind_package(EPG REQUIRED)\n',
+    }
+    for folder, text in texts.items():
+        (tmp_path / folder / "CMakeLists.txt").write_text(f"cmake_minimum_required(VERSION 3.22)\n{text}")
+    done = subprocess.run(["cmake", "-S", tmp_path, "-B", tmp_path / "build"], capture_output=True, text=True)
+    assert done.returncode != 0, done.stdout
+    folders = f"  {HERE} in {ROOT}/cmake\n    {NEXT} in {tmp_path}/two/epg/cmake\n"
+    assert f"EPG: two EPGs are used in one build.\n\n  {folders}" in done.stderr, done.stderr

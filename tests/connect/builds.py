@@ -6,9 +6,9 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from epg.connect.build.run import Build
+from epg.connect.build.build_run import Build
 from epg.connect.projects import Job, find_jobs
-from epg.diagnostics import Diagnostics
+from epg.generator.diagnostics import Diagnostics
 
 
 def job_of(folder: Path) -> Job:

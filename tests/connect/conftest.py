@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from epg.diagnostics import Diagnostics
-from epg.new_project import ProjectRequest, write_project
+from epg.generator.diagnostics import Diagnostics
+from epg.new.new_project import ProjectRequest, write_project
 from tests.connect.page import Page, serving_pages, session_of
 from tests.live.target import jiwy_host, target
 

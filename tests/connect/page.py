@@ -6,7 +6,6 @@ from __future__ import annotations
 import http.client
 import json
 import threading
-import time
 import urllib.error
 import urllib.request
 from collections.abc import Callable, Iterator
@@ -18,7 +17,8 @@ from urllib.parse import urldefrag
 from epg.connect.projects import find_jobs
 from epg.connect.server import SECRET, Server
 from epg.connect.session import Session
-from epg.diagnostics import Diagnostics
+from epg.generator.diagnostics import Diagnostics
+from tests.waiting import until
 
 JSON = {"Content-Type": "application/json"}
 
@@ -61,14 +61,18 @@ class Page:
     def until(self, wanted: Any, seconds: float = 60) -> dict[str, Any]:
         """The first state for which ``wanted`` is true; like the page, it asks for the next state each time."""
         state = self.state()
-        end = time.monotonic() + seconds
-        while not wanted(state):
-            assert time.monotonic() < end, "the state never came"
-            state = self.state(state["version"])
+
+        def found() -> bool:
+            nonlocal state
+            if not wanted(state):
+                state = self.state(state["version"])
+            return bool(wanted(state))
+
+        until(found, "the state never came", seconds, pause=0.0)
         return state
 
     def post(self, action: str, **body: object) -> dict[str, Any]:
-        return json.loads(self._open(f"api/{action}", json.dumps(body).encode(), JSON)[0])
+        return json.loads(self._open(f"api/{action}", json.dumps(body).encode(), JSON)[0] or "{}")
 
     def generate(self) -> dict[str, Any]:
         """Generates, and agrees to run the listed commands."""

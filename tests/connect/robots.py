@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from epg.diagnostics import Diagnostics
-from epg.new_project import ProjectRequest, write_project
+from epg.generator.diagnostics import Diagnostics
+from epg.new.new_project import ProjectRequest, write_project
 
 
 def axes_project(folder: Path, axes: Sequence[str], target: str = "rpi_pico2_bare_metal") -> Path:
@@ -33,6 +33,31 @@ def axes_project(folder: Path, axes: Sequence[str], target: str = "rpi_pico2_bar
         + "".join(f"  {duty}: {{}}\n" for duty in duties)
     )
     write_project(ProjectRequest("robot", folder / "robot", target, model), Diagnostics())
+    return folder / "robot"
+
+
+def jiwy_export_project(folder: Path) -> Path:
+    """A new project for JIWY on this computer, with a controller that has the ports of a real export of 20-sim.
+
+    It has no output that resets an encoder.
+    """
+    model = folder / "export"
+    model.mkdir()
+    inputs, outputs = ("MeasuredPan", "MeasuredTilt", "SetPointPan", "SetPointTilt"), ("SteeringPan", "SteeringTilt")
+    (model / "export.h").write_text(
+        f"typedef struct {{ double {', '.join(inputs)}; }} in_t;\n"
+        f"typedef struct {{ double {', '.join(outputs)}; }} out_t;\nvoid run(const in_t *in, out_t *out);\n"
+    )
+    steps = "".join(f"    out->Steering{axis} = in->SetPoint{axis} - in->Measured{axis};\n" for axis in ("Pan", "Tilt"))
+    (model / "export.c").write_text(f'#include "export.h"\n\nvoid run(const in_t *in, out_t *out)\n{{\n{steps}}}\n')
+    (model / "model.yaml").write_text(
+        "version: 1\nstep: 1 ms\nheader: export.h\nsources: [export.c]\ntypes: {inputs: in_t, outputs: out_t}\n"
+        "functions: {step: run}\ninputs:\n"
+        + "".join(f"  {name}: {{unit: rad}}\n" for name in inputs)
+        + "outputs:\n"
+        + "".join(f"  {name}: {{}}\n" for name in outputs)
+    )
+    write_project(ProjectRequest("robot", folder / "robot", "host_jiwy", model), Diagnostics())
     return folder / "robot"
 
 

@@ -17,8 +17,8 @@ from epg.connect.editor import Editor
 from epg.connect.files import Unsavable
 from epg.connect.pictures import draw
 from epg.connect.projects import Job, find_jobs
-from epg.diagnostics import Diagnostics
-from epg.edit.bindings import CannotEdit, End
+from epg.edit.bindings import CannotEdit, WireEnd
+from epg.generator.diagnostics import Diagnostics
 
 PIECES = """{ } [ ] : # ' - null ~ é inputs: unconnected 1e999 &a !!x extends: target:""".split(" ")
 PIECES += ["\n", "\r\n", "\t", "\0", "components: 3\n", "extends: [a]\n", "extends: robot.tcf\n", "model: other\n"]
@@ -31,9 +31,9 @@ def job_of(project: Path) -> Job:
     return job
 
 
-def any_end(chance: random.Random) -> End:
+def any_end(chance: random.Random) -> WireEnd:
     limits = chance.choice([None, None, ("-1", "1"), ("2", "1"), ("a", "b")])
-    return End(
+    return WireEnd(
         chance.choice(REFERENCES),
         scale=chance.choice(["", "", "1/4", "0", "-2.5", "x"]),
         offset=chance.choice(["", "", "0.5", "1e3"]),

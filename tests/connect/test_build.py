@@ -15,17 +15,18 @@ from typing import Any
 
 import pytest
 
-from epg.catalog.catalog import load_catalog
 from epg.connect import activity as build_module
+from epg.connect.build.build_run import Build, configuration_of
 from epg.connect.build.plan import make_plan
-from epg.connect.build.run import Build, configuration_of
 from epg.connect.projects import Job
-from epg.data import targets_roots
-from epg.diagnostics import Diagnostics
-from epg.new_project import ProjectRequest, write_project
-from epg.tools.tools import load_tools
+from epg.generator.catalog.catalog import load_catalog
+from epg.generator.data import targets_roots
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.tools.tools import load_tools
+from epg.new.new_project import ProjectRequest, write_project
 from tests.connect.builds import job_of, processes, run
 from tests.emulator.toolchain import arm_gcc, skip_if_missing
+from tests.waiting import until
 
 ROOT = Path(__file__).resolve().parents[2]
 MODEL = ROOT / "examples/jiwy/model"
@@ -286,10 +287,12 @@ def test_a_cancelled_build_leaves_no_process_and_goes_on_later(
     job = replace(job_of(robot), build_dir=folder)
     build = Build(lambda: None)
     build.start(job)
-    until = time.monotonic() + 60
-    while not (build.state()["step"] == step and build.lines(0) and build.state()["done"] >= (step == "build")):
-        assert time.monotonic() < until and build.state()["state"] == "running", build.lines(0)
-        time.sleep(0.01)
+
+    def begun() -> bool:
+        assert build.state()["state"] == "running", build.lines(0)
+        return build.state()["step"] == step and build.lines(0) and build.state()["done"] >= (step == "build")
+
+    until(begun, lambda: build.lines(0), 120)
     began = time.monotonic()
     build.cancel()
     assert time.monotonic() - began < 1, "the user who cancels does not wait"
@@ -328,7 +331,7 @@ def test_the_commands_are_those_a_person_types(robot: Path, tmp_path: Path, monk
     write_project(ProjectRequest("robot", tmp_path / "new", "host_jiwy", MODEL), Diagnostics())
     commands, _ = plan_of(job_of(tmp_path / "new"))
     if shutil.which("ninja") is None:
-        pytest.skip("ninja is not installed: apt install ninja-build")
+        pytest.skip("Ninja is not installed: sudo apt install ninja-build")
     assert commands[0] == ("--preset", "release", "-B", str(tmp_path / "new/build"), "-G", "Ninja")
     monkeypatch.setenv("CMAKE_GENERATOR", "Unix Makefiles")
     assert "-G" not in plan_of(job_of(tmp_path / "new"))[0][0], "who has said which, keeps it"
@@ -387,7 +390,7 @@ def test_a_build_inside_a_build_is_no_part_of_it(robot: Path, tmp_path: Path) ->
     (tmp_path / "Makefile").write_text(f'all:\n\t+"$(PYTHON)" "{script}"\n')
     command = ["make", "-j2", "-C", str(tmp_path), f"PYTHON={sys.executable}"]
     if shutil.which("make") is None:
-        pytest.skip("make is not installed: apt install make")
+        pytest.skip("make is not installed: sudo apt install make")
     done = subprocess.run(
         command, capture_output=True, text=True, env={**os.environ, "CLICOLOR_FORCE": "1"}, check=False
     )

@@ -10,13 +10,13 @@ from pathlib import Path
 
 import pytest
 
-from epg.catalog.catalog import load_catalog
-from epg.check.configuration import Configuration
 from epg.connect.build.plan import make_plan
 from epg.connect.projects import Job
-from epg.diagnostics import Diagnostics
-from epg.new_project import ProjectRequest, write_project
-from epg.project import load_configuration
+from epg.generator.catalog.catalog import load_catalog
+from epg.generator.check.configuration import Configuration
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.project import load_configuration
+from epg.new.new_project import ProjectRequest, write_project
 from tests.connect.builds import job_of, run
 from tests.emulator.toolchain import arm_gcc, pico_sdk, skip_if_missing
 from tests.zephyr.workspace import NATIVE, Missing, workspace

@@ -9,7 +9,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -17,6 +16,7 @@ import pytest
 from tests.cmake.project import ROOT, Project, compiled
 from tests.connect.builds import processes
 from tests.connect.started import generate, started
+from tests.waiting import until
 
 GENERATORS = ["Ninja", "Unix Makefiles"]
 
@@ -91,10 +91,7 @@ def test_live_runs_the_program_as_long_as_the_server(robot: Project) -> None:
             os.killpg(process.pid, end)
             said = process.communicate(timeout=30)[0]
             assert "Traceback" not in said
-            until = time.monotonic() + 10
-            while programs(robot):
-                assert time.monotonic() < until, "it still runs"
-                time.sleep(0.01)
+            until(lambda: not programs(robot), "it still runs")
 
 
 def programs(robot: Project) -> list[str]:

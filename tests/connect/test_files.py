@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from epg.connect.files import BOM, Snapshot, Unsavable, Watch, read_snapshot, save
-from epg.emit.leftovers import remove_leftovers
+from epg.generator.emit.leftovers import remove_leftovers
 from tests.connect.page import Denied, Page, serving, session_of
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -82,7 +82,9 @@ def test_line_ends_and_mark_stay(page: Page, bindings: Path) -> None:
     state = page.connect("setpoint_pan", "tilt_subscriber")
     assert "\r" not in state["draft"]["diff"]
     page.post("save")
-    expected = text.replace(b"setpoint_pan: pan_subscriber", b"setpoint_pan: tilt_subscriber")
+    before = b"setpoint_pan: {from: pan_subscriber, follows: position_pan}"
+    assert before in text
+    expected = text.replace(before, b"setpoint_pan: tilt_subscriber")
     assert bindings.read_bytes() == BOM + expected
 
 

@@ -10,25 +10,25 @@ import json
 import os
 import sys
 import threading
-import time
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from epg.connect.activity import Outcome
-from epg.connect.build.run import Build
+from epg.connect.build.build_run import Build
 from epg.connect.projects import Job
 from epg.connect.run.flash import Boards, FlashRun, boards_for
 from epg.connect.session import Session
-from epg.diagnostics import Diagnostics
-from epg.new_project import ProjectRequest, write_project
-from epg.project import load_application
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.project import load_application
+from epg.generator.tools import uf2_drives, usb_boards
+from epg.new.new_project import ProjectRequest, write_project
 from epg.system import flash
-from epg.tools import uf2_drives, usb_boards
 from tests.connect.builds import job_of
 from tests.connect.page import Denied, serving, session_of
 from tests.system.test_flash import FIRST, OPENOCD, PICOTOOL, PROBE, SECOND, usb
+from tests.waiting import until
 
 MODEL = Path(__file__).resolve().parents[2] / "examples/jiwy/model"
 WEST = r"""
@@ -119,13 +119,8 @@ def restarting(folder: Path) -> Callable[[], None]:
     """Plays the boot program: it takes the drive away when the file is complete.  Returns a function that waits."""
 
     def wait() -> None:
-        until = time.monotonic() + 20
-        while time.monotonic() < until:
-            copies = list(folder.glob("*.uf2"))
-            if copies and copies[0].stat().st_size == 256_000:
-                (folder / "INFO_UF2.TXT").unlink()
-                return
-            time.sleep(0.02)
+        until(lambda: any(copy.stat().st_size == 256_000 for copy in folder.glob("*.uf2")))
+        (folder / "INFO_UF2.TXT").unlink()
 
     thread = threading.Thread(target=wait)
     thread.start()

@@ -10,14 +10,14 @@ from typing import Any
 
 import pytest
 
-from epg.catalog.catalog import load_catalog
-from epg.connect.forms import field_at, forms_of, value_of
+from epg.connect.forms import forms_of, value_of
 from epg.connect.loaded import Loaded, Models, load
 from epg.connect.view import view_of
-from epg.data import targets_roots
-from epg.diagnostics import Diagnostics
-from epg.project import Request
-from epg.source import Span
+from epg.generator.catalog.catalog import load_catalog
+from epg.generator.data import targets_roots
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.project import Request
+from epg.generator.source import Span
 
 ROOT = Path(__file__).resolve().parents[2]
 CATALOG = load_catalog(targets_roots(()), Diagnostics())
@@ -57,7 +57,7 @@ def loaded(folder: Path, tcf: str = "axis.tcf", **others: Any) -> Loaded:
 
 
 def forms(folder: Path, **others: Any) -> dict[str, Any]:
-    return forms_of(loaded(folder, **others), CATALOG, owns_tcf=True)
+    return forms_of(loaded(folder, **others), CATALOG, owns_tcf=True).data()
 
 
 def fields(form: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
@@ -136,10 +136,10 @@ def test_a_value_has_its_file_and_the_way_back(folder: Path) -> None:
 def test_files_of_epg_and_arguments_in_cmake_are_told_apart(folder: Path) -> None:
     (folder / "axis.tcf").write_text("version: 1\nextends: rpi_pico_bare_metal_jiwy.tcf\ncontrol: {period: 1 ms}\n")
     found = loaded(folder)
-    values = forms_of(found, CATALOG, owns_tcf=True)["values"]
+    values = forms_of(found, CATALOG, owns_tcf=True).data()["values"]
     assert values["components.pwm_pan.frequency"]["how"] == "epg"
     assert values["control.period"]["how"] == "own"
-    assert forms_of(found, CATALOG, owns_tcf=False)["values"]["control.period"]["how"] == "file"
+    assert forms_of(found, CATALOG, owns_tcf=False).values["control.period"].how == "file"
 
     argument = ("control.period=2 ms", Span("CMakeLists.txt", 7, 3, 20))
     changed = forms(folder, settings=[argument])["values"]["control.period"]
@@ -199,10 +199,10 @@ def test_a_message_of_the_settings_is_at_its_field(folder: Path) -> None:
 
 
 def test_texts_become_values(folder: Path) -> None:
-    found = forms(folder)
+    found = forms_of(loaded(folder), CATALOG, owns_tcf=True)
 
     def value(path: str, text: str) -> object:
-        field = field_at(found, path.split("."))
+        field = found.field_at(path.split("."))
         assert field is not None
         return value_of(field, text, ValueError)
 
@@ -219,7 +219,7 @@ def test_texts_become_values(folder: Path) -> None:
     assert value("control.enable_topic", "false") is False
     assert value("control.enable_topic", "~/on") == "~/on"
     assert value("node", "12") == "12"
-    assert field_at(found, ["components", "motor", "frequenzy"]) is None
-    assert field_at(found, ["components", "lamp", "invert"]) is None
+    assert found.field_at(["components", "motor", "frequenzy"]) is None
+    assert found.field_at(["components", "lamp", "invert"]) is None
     with pytest.raises(ValueError, match="bracket"):
         value("components.encoder.limits", "[-1, 1")

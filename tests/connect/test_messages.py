@@ -10,13 +10,13 @@ from pathlib import Path
 
 import pytest
 
-from epg.connect.build.messages import LIMIT, Message, Messages, plain
+from epg.connect.build.build_messages import LIMIT, BuildMessage, Messages, plain
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = {"arm-none-eabi-gcc": "gcc-arm-none-eabi", "ninja": "ninja-build"}
 
 
-def read(text: str, *folders: Path, failed: bool = True) -> list[Message]:
+def read(text: str, *folders: Path, failed: bool = True) -> list[BuildMessage]:
     messages = Messages(folders or (Path("/project"), Path("/project/build")))
     for line in text.split("\n"):
         messages.read(plain(line))
@@ -26,7 +26,7 @@ def read(text: str, *folders: Path, failed: bool = True) -> list[Message]:
 def said(folder: Path, *command: str) -> str:
     """The output of a program, stdout and stderr together."""
     if shutil.which(command[0]) is None:
-        pytest.skip(f"{command[0]} is not installed: apt install {PACKAGES.get(command[0], command[0])}")
+        pytest.skip(f"{command[0]} is not installed: sudo apt install {PACKAGES.get(command[0], command[0])}")
     environment = {"PATH": "/usr/local/bin:/usr/bin:/bin", "LC_ALL": "C.UTF-8"}
     done = subprocess.run(
         command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment, check=False

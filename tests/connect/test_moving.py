@@ -11,16 +11,16 @@ from typing import Any
 
 import pytest
 
-from epg.catalog.catalog import load_catalog
 from epg.cli.main import main
 from epg.connect.body import Refused
 from epg.connect.build.plan import make_plan
 from epg.connect.editor import Editor
 from epg.connect.projects import Job, find_jobs
-from epg.data import targets_roots
-from epg.diagnostics import Diagnostics
-from epg.new_project import ProjectRequest, new_project, write_project
-from epg.project import load_configuration
+from epg.generator.catalog.catalog import load_catalog
+from epg.generator.data import targets_roots
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.project import load_configuration
+from epg.new.new_project import ProjectRequest, new_project, write_project
 from tests.connect.conftest import ROOT, one_axis_project
 from tests.connect.page import session_of
 from tests.emulator.toolchain import arm_gcc, pico_sdk, skip_if_missing

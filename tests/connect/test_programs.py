@@ -12,11 +12,12 @@ from urllib.parse import quote
 
 import pytest
 
-from epg.diagnostics import Diagnostics
-from epg.new_project import ProjectRequest, write_project
+from epg.generator.diagnostics import Diagnostics
+from epg.new.new_project import ProjectRequest, write_project
 from tests.connect.builds import processes
 from tests.connect.page import Denied, Page, serving, session_of
 from tests.connect.started import generate
+from tests.waiting import until
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -60,10 +61,11 @@ def test_a_program_runs_until_it_is_stopped(built: Path, tmp_path: Path, monkeyp
         assert first == {"path": str(built / "build/robot_host.port"), "device": "the program that runs"}
         page.post("live/connect", path=first["path"])
         assert page.state()["live"]["target"]["matches"], "its hash is that of the build"
-        page.post("live/disconnect")
         page.post("cancel")
         state = page.until(lambda state: state["program"]["state"] != "running")
         assert state["program"]["state"] == "cancelled" and not processes(built)
+        live = state["live"]
+        assert (live["target"], live["lost"], live["problem"]) == (None, None, None), "the user has ended it"
         output = page.json("api/log?of=program&from=0")["lines"]
         assert "in real time" in output[0] and "interrupted" in output[0], "the program has completed its output"
 
@@ -80,12 +82,8 @@ def test_a_program_that_fails_says_why(built: Path) -> None:
         (product,) = page.state()["build"]["products"]
         run(page, product["path"])
         page.until(lambda state: state["program"]["state"] == "running")
-        until = time.monotonic() + 10
-        while not (
-            found := [int(entry.name) for entry in Path("/proc").glob("[0-9]*") if runs(entry, product["path"])]
-        ):
-            assert time.monotonic() < until
-        for process in found:
+        entries = until(lambda: [entry for entry in Path("/proc").glob("[0-9]*") if runs(entry, product["path"])])
+        for process in (int(entry.name) for entry in entries):
             os.kill(process, signal.SIGKILL)
         state = page.until(lambda state: state["program"]["state"] != "running")
         (message,) = state["program"]["messages"]

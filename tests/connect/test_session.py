@@ -10,14 +10,18 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any, cast
 
 import pytest
 
 from epg.connect.projects import find_jobs
 from epg.connect.session import Session
-from epg.diagnostics import Diagnostics
+from epg.generator.correction import correction
+from epg.generator.diagnostics import Diagnostic, Diagnostics
+from epg.generator.source import Span
 from tests.connect.conftest import one_axis_project
 from tests.connect.page import Denied, Page, serving, session_of
+from tests.connect.robots import jiwy_export_project
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 
@@ -38,15 +42,16 @@ def test_a_port_is_connected_and_saved(page: Page, bindings: Path) -> None:
             "offset": "0.5",
             "limits": ["-1", "1"],
             "unit": "",
+            "follows": "",
             "text": "×1/4 +0.5 in -1…1",
-            "from_tcf": "",
+            "from_tcf": "in -0.05…1.6",
             "component_unit": "rad",
             "model_unit": "rad",
         }
     ]
     assert state["draft"]["changed"] and state["draft"]["can_undo"] and not state["draft"]["can_redo"]
     diff = state["draft"]["diff"].splitlines()
-    assert "-  setpoint_pan: pan_subscriber" in diff
+    assert "-  setpoint_pan: {from: pan_subscriber, follows: position_pan}" in diff
     assert "+  setpoint_pan: {from: tilt_subscriber, scale: 1/4, offset: 0.5, limits: [-1, 1]}" in diff
 
     state = page.post("save")
@@ -73,6 +78,129 @@ def test_messages_stand_at_the_port(page: Page) -> None:
     assert not state["pictures"]["application"] and state["pictures"]["wiring"]
     state = page.connect("position_pan", "pwm_pan")
     assert [each["port"] for each in state["diagnostics"] if each["id"] == "wrong-direction"] == ["position_pan"]
+
+
+def edit_of(state: dict[str, Any], id: str) -> dict[str, Any]:
+    """The edit of the only message with this id."""
+    (message,) = [each for each in state["diagnostics"] if each["id"] == id]
+    (found,) = message["edits"]
+    return cast("dict[str, Any]", found)
+
+
+def apply(page: Page, edit: dict[str, Any]) -> dict[str, Any]:
+    return page.post("apply", **{key: edit[key] for key in ("file", "line", "column", "new")})
+
+
+def test_edits_of_messages_are_applied(page: Page, project: Path, bindings: Path) -> None:
+    """Each is one step of the draft, in the bindings and in the .tcf; nothing is written before the user saves."""
+    tcf = project / "robot.tcf"
+    right, right_tcf = bindings.read_text(), tcf.read_text()
+    wrong = right.replace("pwm_pan: pwm_pan", "pwm_pan: pwn_pan")
+    bindings.write_text(wrong)
+    tcf.write_text(right_tcf.replace("enable_at_start", "enable_at_strat"))
+    state = apply(page, edit_of(page.state(), "unknown-key"))
+    assert "+  enable_at_start: false  # motors stay off until the target is enabled" in state["draft"]["diff"]
+    edit = edit_of(state, "unknown-component")
+    assert (edit["old"], edit["new"]) == ("pwn_pan", "pwm_pan")
+    state = apply(page, edit)
+    assert state["diagnostics"] == [] and bindings.read_text() == wrong
+    assert edit_of(page.post("undo"), "unknown-component") == edit
+    page.post("redo")
+    page.post("save")
+    assert (bindings.read_text(), tcf.read_text()) == (right, right_tcf)
+
+
+def test_only_edits_of_present_messages_are_applied(page: Page, bindings: Path) -> None:
+    right = bindings.read_text()
+    bindings.write_text(right.replace("pwm_pan: pwm_pan", "pwm_pan: pwn_pan"))
+    edit = edit_of(page.state(), "unknown-component")
+    for wrong in ({"new": "encoder_pan"}, {"line": edit["line"] + 1}, {"file": "/etc/passwd"}):
+        with pytest.raises(Denied, match="no message proposes this change"):
+            apply(page, edit | wrong)
+    bindings.write_text(right)
+    with pytest.raises(Denied, match="no message proposes this change"):
+        apply(page, edit)
+    assert bindings.read_text() == right
+
+
+def test_an_edit_that_another_program_has_overtaken(page: Page, bindings: Path) -> None:
+    """The line has moved: the unsaved change does not fit the new text, and is not made elsewhere."""
+    wrong = bindings.read_text().replace("pwm_pan: pwm_pan", "pwm_pan: pwn_pan")
+    bindings.write_text(wrong)
+    apply(page, edit_of(page.state(), "unknown-component"))
+    bindings.write_text(f"# mine\n{wrong}")
+    conflict = page.until(lambda state: state["draft"]["conflict"])["draft"]["conflict"]
+    assert "there is no 'pwn_pan' any more that 'pwm_pan' could replace" in conflict["message"]
+
+
+def test_a_line_is_inserted_and_taken_back(page: Page, bindings: Path) -> None:
+    """The line comes to the place that it had, and does not follow a text that another program has moved."""
+    right = bindings.read_text()
+    line = "  position_tilt: encoder_tilt\n"
+    assert line in right
+    bindings.write_text(right.replace(line, ""))
+    edit = edit_of(page.state(), "unbound-input")
+    assert (edit["old"], edit["new"]) == ("", "\n" + line.rstrip("\n"))
+    state = apply(page, edit)
+    assert state["diagnostics"] == []
+    page.post("undo")
+    apply(page, edit)
+    bindings.write_text("# mine\n" + right.replace(line, ""))
+    conflict = page.until(lambda state: state["draft"]["conflict"])["draft"]["conflict"]
+    assert "there is no such line: add 'inputs: {position_tilt: encoder_tilt}'" in conflict["message"]
+    page.post("reload")
+    apply(page, edit_of(page.state(), "unbound-input"))
+    page.post("save")
+    assert bindings.read_text() == "# mine\n" + right
+
+
+def test_homing_of_an_export_without_resets(tmp_path: Path) -> None:
+    """Wires are right, and two guards wait for a reset that the controller does not have: a button for each."""
+    folder = jiwy_export_project(tmp_path)
+    with serving(session_of(folder)) as page:
+        state = page.post("accept")
+        for name in ("guard_pan", "guard_tilt"):
+            message = next(each for each in state["diagnostics"] if each["id"] == "needs-bound")
+            (edit,) = message["edits"]
+            assert edit["sentence"] == f"write 'homing: null' in '{name}' of robot.tcf"
+            state = apply(page, edit)
+        assert {each["id"] for each in state["diagnostics"]} == {"unused-component"}
+        page.post("save")
+    assert (
+        "components:\n  guard_pan: {homing: null}\n  guard_tilt: {homing: null}\n" in (folder / "robot.tcf").read_text()
+    )
+
+
+def test_the_user_chooses_one_of_two_edits(page: Page, project: Path, bindings: Path) -> None:
+    right = bindings.read_text()
+    bindings.write_text(right.replace("encoder_tilt.reset", "unconnected"))
+    (message,) = page.state()["diagnostics"]
+    wire, without = message["edits"]
+    assert [edit["sentence"] for edit in (wire, without)] == [
+        "write 'encoder_reset_tilt: encoder_tilt.reset'",
+        "write 'homing: null' in 'guard_tilt' of robot.tcf",
+    ]
+    assert message["hint"] == f"{wire['sentence']}, or {without['sentence']}"
+    assert apply(page, without)["diagnostics"] == []
+    assert page.post("undo")["diagnostics"] == [message]
+    assert apply(page, wire)["diagnostics"] == []
+    page.post("save")
+    assert bindings.read_text() == right and "homing" not in (project / "robot.tcf").read_text()
+
+
+def test_edits_of_files_of_epg_are_not_offered(tmp_path: Path) -> None:
+    """A user's .tcf extends a file of EPG; a mistake in the extended file would not be the user's to correct."""
+    session = session_of(ROOT / "examples/jiwy")
+    assert session.state()["diagnostics"] == []
+    editor = session._editor
+    assert editor is not None and not editor.owns_tcf
+    editor.loaded = replace(
+        editor.loaded,
+        diagnostics=(
+            Diagnostic("x", "error", Span(str(editor.draft.tcf.path), 1, 1, 8), "m", correction("version", "api")),
+        ),
+    )
+    assert editor.proposed_edits() == [[]]
 
 
 def test_parts_that_no_port_uses_are_left_out(one_axis: Path) -> None:

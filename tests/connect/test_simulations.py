@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from epg.connect.run.find_simulation import simulations_of
-from epg.diagnostics import Diagnostics
-from epg.new_project import ProjectRequest, write_project
+from epg.generator.diagnostics import Diagnostics
+from epg.new.new_project import ProjectRequest, write_project
 from tests.connect.builds import job_of
 from tests.connect.page import Denied, serving, session_of
 

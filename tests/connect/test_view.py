@@ -15,8 +15,11 @@ from epg.cli.main import main
 from epg.connect.loaded import Loaded, Models
 from epg.connect.loaded import load as load_with
 from epg.connect.pictures import draw
+from epg.connect.unused_parts import unused_parts
 from epg.connect.view import view_of
-from epg.project import Request
+from epg.generator.catalog.catalog import load_catalog
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.project import Request, load_configuration
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 TCF = """version: 1
@@ -117,7 +120,8 @@ def test_messages_are_those_of_the_command_line(name: str, files: Path, capsys: 
     main(["check", "--json", *arguments])
     said = json.loads(capsys.readouterr().out)["diagnostics"]
     added = ("port", "ports", "component", "path")
-    assert [{key: value for key, value in each.items() if key not in added} for each in shown] == said
+    shown_here = [{key: value for key, value in each.items() if key not in added} for each in shown]
+    assert shown_here == [{key: value for key, value in each.items() if key != "edits"} for each in said]
     found = {(each["id"], each["port"], each["component"]) for each in shown}
     assert about <= found if about else not found
 
@@ -144,7 +148,7 @@ def test_conversions_say_where_they_come_from(files: Path) -> None:
     assert told["position_pan"] == ("deg → rad", "rad → deg ×57.2958")
     assert told["position_tilt"] == ("×1/3 -0.1", "")
     assert told["pwm_pan"] == ("×0.5 in -1…1", "×0.5 in -0.4…0.4")
-    assert told["setpoint_pan"] == ("", "")
+    assert told["setpoint_pan"] == ("", "in -0.05…3.2")
 
 
 def test_units_that_convert_are_those_of_the_application(files: Path) -> None:
@@ -204,3 +208,11 @@ def test_proposals_give_no_output_away_twice(files: Path) -> None:
     assert "pwm_tilt" not in shown["proposals"] and "pwm_tilt" not in shown["wires"]
     edit(files / "b.yaml", ("pwm_pan: pwm_tilt", "pwm_pan: pwm_pan"))
     assert view(files)["proposals"] == {"pwm_tilt": "pwm_tilt"}
+
+
+def test_an_input_that_can_stop_the_robot_is_never_left_out() -> None:
+    folder = ROOT / "tests" / "errors" / "common"
+    asked = Request("robot", "robot.tcf", folder / "model", folder / "bindings.yaml", beside=folder)
+    configuration = load_configuration(asked, load_catalog(asked.roots, Diagnostics()), Diagnostics())
+    assert configuration is not None
+    assert {name for (name,) in unused_parts(configuration, ())} == {"encoder", "motor", "target", "position"}

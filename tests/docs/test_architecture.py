@@ -6,60 +6,93 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
 PACKAGE = ROOT / "epg"
+GENERATOR = PACKAGE / "generator"
+BASE = {"generator", "runs", "edit"}
 
 
 def floors() -> dict[str, int]:
-    """The position of each part in the page's list, counted from the top."""
-    block = next(block for block in PAGE.split("```")[1::2] if "documents" in block.split())
+    """The position of each part of the generator in the page's list, counted from the top."""
+    block = next(block for block in PAGE.split("```")[1::2] if "dataclass" in block.split())
     return {room: number for number, line in enumerate(block.splitlines()) for room in line.split()}
 
 
-def room_of(module: list[str]) -> str | None:
-    """The part of the package to which a module belongs; None for ``epg`` itself."""
-    return module[1] if len(module) > 1 else None
+def annexes() -> dict[str, set[str]]:
+    """The parts that each annex may import, of the page's table."""
+    table = PAGE[PAGE.index("| annex | imports besides |") :].split("\n\n")[0]
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()[2:]]
+    allowed = {}
+    for names, besides in rows:
+        for name in re.findall(r"`(\w+)`", names):
+            allowed[name] = BASE | set(re.findall(r"`(\w+)`", besides))
+    allowed["runs"] = allowed["edit"] = {"generator"}
+    allowed["connect"] = set(allowed) | {"generator"} - {"cli"}
+    allowed["cli"] = set(allowed) | {"generator"}
+    return allowed
 
 
-def imports(path: Path) -> Iterator[tuple[int, str | None]]:
-    """The parts that a file of EPG imports, anywhere in the file, with their lines."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            names = [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0, f"{path}: a relative import"
-            names = [f"{node.module}.{alias.name}" for alias in node.names]
-        else:
-            continue
-        for name in (name.split(".") for name in names if name.split(".")[0] == "epg"):
-            if name[1:] != ["__version__"]:
-                yield node.lineno, room_of(name)
+def parts(folder: Path) -> set[str]:
+    """The modules and packages of a folder."""
+    there = {path.stem for path in folder.iterdir() if path.suffix == ".py" and not path.stem.startswith("__")}
+    return there | {path.parent.name for path in folder.glob("*/__init__.py")}
 
 
-def test_imports_lead_down() -> None:
+@cache
+def imports(place: Path) -> list[tuple[str, list[str]]]:
+    """Each import of EPG's own modules in a file or folder: its place, and the parts of the imported name."""
+    return list(_imports(place))
+
+
+def _imports(place: Path) -> Iterator[tuple[str, list[str]]]:
+    for path in sorted(place.rglob("*.py")) if place.is_dir() else [place]:
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                names = [alias.name for alias in node.names]
+            elif isinstance(node, ast.ImportFrom):
+                assert node.level == 0, f"{path}: a relative import"
+                names = [f"{node.module}.{alias.name}" for alias in node.names]
+            else:
+                continue
+            for name in (name.split(".") for name in names if name.split(".")[0] == "epg"):
+                if name[1:] not in ([], ["__version__"]):
+                    yield f"{path.relative_to(ROOT)}:{node.lineno}", name[1:]
+
+
+def test_the_generator_imports_nothing_else() -> None:
+    assert [place for place, name in imports(GENERATOR) if name[0] != "generator"] == []
+
+
+def test_imports_inside_the_generator_lead_down() -> None:
     floor = floors()
     wrong = []
-    for path in sorted(PACKAGE.rglob("*.py")):
-        module = list(path.relative_to(ROOT).with_suffix("").parts)
-        room = room_of(module)
-        for line, imported in imports(path):
-            if room == "__init__" or imported is None or imported == room:
-                continue
-            if floor[imported] <= floor[room or ""]:
-                wrong.append(f"{path.relative_to(ROOT)}:{line}: {room} imports {imported}")
+    for part in sorted(floor):
+        folder = GENERATOR / part
+        for place, name in imports(folder if folder.is_dir() else folder.with_suffix(".py")):
+            if name[1] != part and floor[name[1]] <= floor[part]:
+                wrong.append(f"{place}: {part} imports {name[1]}")
     assert wrong == []
 
 
-def test_the_list_names_every_part_once() -> None:
-    there = {path.stem for path in PACKAGE.iterdir() if path.suffix == ".py" and path.stem != "__init__"}
-    there |= {path.parent.name for path in PACKAGE.glob("*/__init__.py")}
-    block = next(block for block in PAGE.split("```")[1::2] if "documents" in block.split())
-    assert sorted(block.split()) == sorted(there)
+def test_annexes_import_only_the_parts_in_the_table() -> None:
+    wrong = []
+    for annex, allowed in annexes().items():
+        for place, name in imports(PACKAGE / annex):
+            if name[0] != annex and name[0] not in allowed:
+                wrong.append(f"{place}: {annex} imports {name[0]}")
+    assert wrong == []
+
+
+def test_the_lists_name_every_part_once() -> None:
+    assert set(floors()) == parts(GENERATOR)
+    assert set(annexes()) | {"generator"} == parts(PACKAGE)
 
 
 def test_the_table_describes_every_folder_of_the_package() -> None:
-    described = set(re.findall(r"^\| `epg/(\w+)` \|", PAGE, re.MULTILINE))
-    assert described == {path.parent.name for path in PACKAGE.glob("*/__init__.py")}
+    described = set(re.findall(r"^\| `epg/((?:generator/)?\w+)` \|", PAGE, re.MULTILINE))
+    there = {path.parent.relative_to(PACKAGE).as_posix() for path in PACKAGE.glob("*/__init__.py")} - {"generator"}
+    assert described == there | {f"generator/{path.parent.name}" for path in GENERATOR.glob("*/__init__.py")}

@@ -1,19 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The words that ``docs/glossary.md`` says are not used, in names of the code and in all texts."""
+"""The words that ``docs/glossary.md`` says are not used, in names of the code and in all texts.
+
+A public class or type of ``epg/``, and most of its files, have a name of their own, too.
+"""
 
 from __future__ import annotations
 
+import ast
 import io
 import keyword
 import re
-import shutil
-import subprocess
 import tokenize
+from collections import Counter, defaultdict
+from collections.abc import Iterator
 from pathlib import Path
 
-import pytest
+from tests.checkout import ROOT, listed
 
-ROOT = Path(__file__).resolve().parents[2]
 GLOSSARY = ROOT / "docs/glossary.md"
 TEXTS = (
     "*.py",
@@ -30,6 +33,28 @@ TEXTS = (
     "*.case",
 )
 MOST_PHRASES = 30
+LAYERS = "the package is what is done, and the file what it is done to"
+SAME_FILES = {
+    "application.py": LAYERS,
+    "bindings.py": LAYERS,
+    "claims.py": LAYERS,
+    "flash.py": "connect/run starts what system does",
+    "hardware.py": LAYERS,
+    "judge.py": "a recording of a motor is judged, or a run by its scenario",
+    "merge.py": "check has the rules of .tcf files, documents those of all YAML documents",
+    "messages.py": LAYERS,
+    "middleware.py": LAYERS,
+    "model.py": LAYERS,
+    "motors.py": LAYERS,
+    "other_code.py": LAYERS,
+    "parameters.py": LAYERS,
+    "picture.py": "the picture of its package",
+    "pins.py": LAYERS,
+    "tcf.py": LAYERS,
+    "text.py": "the texts of its package: those of a terminal, and those of generated files",
+    "topics.py": LAYERS,
+}
+"""Names of several files of ``epg/``, with the reason.  A subcommand in ``epg/cli`` has the name of its work."""
 _C = re.compile(r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|/\*.*?\*/|//[^\n]*', re.DOTALL)
 
 
@@ -42,13 +67,7 @@ def table(heading: str) -> list[str]:
 
 def files(*patterns: str) -> list[Path]:
     """The project's files, without exports and golden output."""
-    if shutil.which("git") is None:
-        pytest.skip("git is not installed: apt install git")
-    listed = subprocess.run(["git", "-C", str(ROOT), "ls-files", "--", *patterns], capture_output=True, text=True)
-    if listed.returncode != 0:
-        pytest.skip("this is no checkout of git: apt install git")
-    names = [name for name in listed.stdout.splitlines() if not re.search(r"(^|/)(model|plant|golden|lock)/", name)]
-    return [ROOT / name for name in names if (ROOT / name).is_file()]
+    return [ROOT / name for name in listed("--", *patterns) if not re.search(r"(^|/)(model|plant|golden|lock)/", name)]
 
 
 def python_names(path: Path) -> set[str]:
@@ -94,3 +113,54 @@ def test_no_text_has_a_phrase_that_is_not_used() -> None:
                 f"{path.relative_to(ROOT)}:{text.count(chr(10), 0, m.start()) + 1}: {m[0]}" for m in one.finditer(text)
             ]
     assert found == []
+
+
+def type_names(path: Path) -> Iterator[str]:
+    """The public classes and aliases of types at the top of a Python file: ``Row``, not ``ROWS``."""
+    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.ClassDef):
+            yield node.name
+        elif isinstance(node, ast.Assign | ast.AnnAssign):
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            yield from (target.id for target in targets if isinstance(target, ast.Name))
+
+
+def test_a_class_has_a_name_of_its_own() -> None:
+    found = defaultdict(list)
+    for path in files("epg/*.py"):
+        for name in type_names(path):
+            if re.match(r"[A-Z]\w*[a-z]", name):
+                found[name].append(str(path.relative_to(ROOT)))
+    assert len(found) > 400
+    assert {name: paths for name, paths in found.items() if len(paths) > 1} == {}
+
+
+def test_a_file_has_a_name_of_its_own() -> None:
+    names = Counter(path.name for path in files("epg/*.py") if path.parent.name != "cli" and path.stem != "__init__")
+    assert {name for name, count in names.items() if count > 1} == SAME_FILES.keys()
+
+
+def class_names(place: Path) -> list[str]:
+    """The classes at the top of a Python file, or of all files in a folder, of ``epg`` or of its generator."""
+    place = place if place.exists() or place.with_suffix(".py").exists() else ROOT / "epg/generator" / place.name
+    paths = sorted(place.rglob("*.py")) if place.is_dir() else [place.with_suffix(".py")]
+    bodies = [ast.parse(path.read_text(encoding="utf-8")).body for path in paths]
+    return [node.name for body in bodies for node in body if isinstance(node, ast.ClassDef)]
+
+
+def test_each_class_of_an_entry_exists() -> None:
+    """An entry names at most one class, ``package.Class`` in ``epg``, and its term has no other entry."""
+    lines = GLOSSARY.read_text(encoding="utf-8").partition("\n## Words that are not used\n")[0].splitlines()
+    rows = [line.strip("| ").split(" | ", 1) for line in lines if line.startswith("| ") and "---" not in line]
+    terms = [term.strip("` ") for names, _ in rows[1:] for term in names.split(",") if names != "term"]
+    assert len(terms) > 70 and len(set(terms)) == len(terms)
+    named = {names: re.findall(r"[Cc]lass `([\w.]+)`", meaning) for names, meaning in rows}
+    classes = [name for found in named.values() for name in found]
+    assert {names: found for names, found in named.items() if len(found) > 1} == {}
+    assert len(classes) > 25 and len(set(classes)) == len(classes)
+    missing = []
+    for name in classes:
+        package, _, of_class = name.rpartition(".")
+        if class_names(ROOT / "epg" / package).count(of_class) != 1:
+            missing.append(name)
+    assert missing == []

@@ -4,26 +4,19 @@
 from __future__ import annotations
 
 import re
-import shutil
-import subprocess
 from pathlib import Path
 
 import pytest
 
-from epg.install import ACTIVATE, install_command
+from epg.generator.install import ACTIVATE, install_command
+from tests.checkout import ROOT, listed
 
-ROOT = Path(__file__).resolve().parents[2]
 TEXTS = ("*.md", "*.cmake", "*.j2", "*.py", "*.json", "*.yaml", "*.txt", "*.cmd", "*.js")
 
 
 def files() -> list[Path]:
     """All texts of the project except those of its tests."""
-    if shutil.which("git") is None:
-        pytest.skip("git is not installed: apt install git")
-    listed = subprocess.run(["git", "-C", str(ROOT), "ls-files", "--", *TEXTS], capture_output=True, text=True)
-    if listed.returncode != 0:
-        pytest.skip("this is no checkout of git: apt install git")
-    return [ROOT / name for name in listed.stdout.splitlines() if not name.startswith("tests/")]
+    return [ROOT / name for name in listed("--", *TEXTS) if not name.startswith("tests/")]
 
 
 def test_nobody_is_told_to_install_epg_by_its_name() -> None:

@@ -5,17 +5,15 @@ from __future__ import annotations
 
 import hashlib
 import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from epg.emit.licence import first_line
+from epg.generator.emit.licence import first_line
+from tests.checkout import ROOT, listed
 from tests.docs.licence_lines import LINE, sources, with_line
-
-ROOT = Path(__file__).resolve().parents[2]
 
 
 def test_the_licence_is_the_whole_text() -> None:
@@ -44,16 +42,7 @@ def test_what_is_not_epgs_text_has_no_line_or_another_one() -> None:
 
 def test_sources_say_it_at_their_beginning() -> None:
     """``EPG_UPDATE_GOLDEN=1`` adds the missing lines."""
-    if shutil.which("git") is None:
-        pytest.skip("git is not installed: apt install git")
-    listed = subprocess.run(
-        ["git", "-C", str(ROOT), "ls-files", "--cached", "--others", "--exclude-standard"],
-        capture_output=True,
-        text=True,
-    )
-    if listed.returncode != 0:
-        pytest.skip("this is no checkout of git: apt install git")
-    names = sources(name for name in listed.stdout.splitlines() if (ROOT / name).is_file())
+    names = sources(listed("--cached", "--others", "--exclude-standard"))
     assert len(names) > 500
     missing = []
     for name in names:

@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 
-from epg.diagnostics import Diagnostics
-from epg.emit.application import Emitter
-from epg.project import Request, load_application
-from epg.source import Span
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.emit.application import Emitter
+from epg.generator.project import Request, load_application
+from epg.generator.source import Span
 from tests.errors.test_errors import HERE as CASES
 
 PAGE = CASES.parent.parent / "docs" / "adding-a-platform.md"

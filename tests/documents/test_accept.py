@@ -12,11 +12,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
-from epg.data import data_folder
-from epg.diagnostics import Diagnostics
-from epg.documents.accept import accepts
-from epg.documents.schema import load_schema
-from epg.documents.yaml_file import load_yaml
+from epg.generator.data import data_folder
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.accept import accepts
+from epg.generator.documents.schema import load_schema
+from epg.generator.documents.yaml_file import load_yaml
 
 SCALARS = st.one_of(
     st.none(),
@@ -72,7 +72,7 @@ LEAVES = st.fixed_dictionaries({}, optional={key: value for key, value in SIMPLE
 SCHEMAS = st.recursive(st.fixed_dictionaries({}, optional=SIMPLE), schemas, max_leaves=6)
 
 
-@settings(max_examples=600, deadline=None)
+@settings(max_examples=300, deadline=None)
 @given(SCHEMAS, LEAVES, LEAVES, VALUES)
 def test_the_same_verdict_as_jsonschema(schema: dict[str, Any], one: Any, two: Any, value: Any) -> None:
     whole = {**schema, "$defs": {"one": one, "two": two}}

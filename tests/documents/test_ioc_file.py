@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from epg.diagnostics import Diagnostics
-from epg.documents.ioc_file import Ioc, read_ioc
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.ioc_file import Ioc, read_ioc
 from tests.documents.ioc_texts import escaped, ioc_text
 
 PATH = Path("robot.ioc")

@@ -6,9 +6,9 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from epg.data import data_folder
-from epg.diagnostics import Diagnostics
-from epg.documents.yaml_file import load_yaml
+from epg.generator.data import data_folder
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.yaml_file import load_yaml
 
 
 def _patterns(schema: Any, place: str) -> list[tuple[str, dict[str, Any]]]:

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from epg.diagnostics import Diagnostics
-from epg.documents.yaml_file import load_yaml, parse_yaml
-from epg.source import Span, YamlNode
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.yaml_file import load_yaml, parse_yaml
+from epg.generator.source import Span, YamlNode
 
 
 def parse(text: str) -> YamlNode:

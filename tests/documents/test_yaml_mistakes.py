@@ -6,9 +6,9 @@ from __future__ import annotations
 import pytest
 import yaml
 
-from epg.diagnostics import Diagnostics
-from epg.documents import yaml_file
-from epg.documents.yaml_file import parse_yaml
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents import yaml_file
+from epg.generator.documents.yaml_file import parse_yaml
 
 MISTAKES = [
     ("control:\n\tperiod: 1 ms\n", 2, 1, "tab", "spaces"),

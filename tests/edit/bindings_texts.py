@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import yaml
 from hypothesis import strategies as st
 
-from epg.edit.bindings import End
+from epg.edit.bindings import WireEnd
 from epg.edit.scalars import scalar_text
 from epg.edit.section import open_port, open_section
 
@@ -26,7 +26,7 @@ KEY = {"inputs": "from", "outputs": "to"}
 references = st.sampled_from(["encoder", "motor", "motor.duty", "joint_states.pan.position", "lamp", "a"])
 numbers = st.sampled_from(["1", "-2", "0.5", "1e-3", ".25", "0x10"])
 ends = st.builds(
-    End,
+    WireEnd,
     references,
     st.sampled_from(["", "", "2", "-0.5", "1/4", "361/5625"]),
     st.just("") | numbers,
@@ -49,7 +49,7 @@ class Text:
     """A file, its lines, and its meaning: section -> port -> ends."""
 
     lines: list[Line]
-    said: dict[str, dict[str, tuple[End, ...]]]
+    said: dict[str, dict[str, tuple[WireEnd, ...]]]
     line_end: str
     has_last_end: bool
     in_braces: set[str] = field(default_factory=set)
@@ -88,7 +88,7 @@ class Writer:
     def text(self, value: str) -> str:
         return scalar_text(value, self.draw(st.sampled_from(["", "", "'", '"'])))
 
-    def parts(self, end: End, key: str) -> list[tuple[str, str]]:
+    def parts(self, end: WireEnd, key: str) -> list[tuple[str, str]]:
         parts = [(key, self.text(end.reference))]
         parts += [(name, getattr(end, name)) for name in ("scale", "offset") if getattr(end, name)]
         if end.limits:
@@ -97,7 +97,7 @@ class Writer:
             parts.append(("unit", self.text(end.unit)))
         return self.draw(st.permutations(parts)) if self.chance() else parts
 
-    def flow(self, end: End, key: str) -> str:
+    def flow(self, end: WireEnd, key: str) -> str:
         """An end on one line."""
         parts = self.parts(end, key)
         if len(parts) == 1 and not self.chance(4):
@@ -106,7 +106,7 @@ class Writer:
         last = self.draw(st.sampled_from(["", "", "", ",", " , "]))
         return "{" + blank + ", ".join(f"{name}: {value}" for name, value in parts) + last + blank + "}"
 
-    def flow_value(self, ends: tuple[End, ...], section: str) -> str:
+    def flow_value(self, ends: tuple[WireEnd, ...], section: str) -> str:
         if not ends:
             return self.draw(st.sampled_from(["unconnected", "'unconnected'", "[unconnected]"]))
         texts = [self.flow(end, KEY[section]) for end in ends]
@@ -126,7 +126,7 @@ class Writer:
         self.between(indent, owner)
         self.lines.append(Line(" " * indent + marks[1] + self.comment(), owner))
 
-    def map(self, first: str, end: End, key: str, indent: int, owner: str) -> None:
+    def map(self, first: str, end: WireEnd, key: str, indent: int, owner: str) -> None:
         """A mapping in block style."""
         for index, (name, value) in enumerate(self.parts(end, key)):
             if index:
@@ -138,7 +138,7 @@ class Writer:
             else:
                 self.lines.append(Line(f"{before}{name}: {value}{self.comment()}", owner))
 
-    def port(self, name: str, ends: tuple[End, ...], section: str, indent: int, list_indent: int) -> None:
+    def port(self, name: str, ends: tuple[WireEnd, ...], section: str, indent: int, list_indent: int) -> None:
         head = " " * indent + self.text(name) + self.draw(st.sampled_from(["", "", " "])) + ":"
         style = self.draw(st.integers(0, 5))
         if style > 2 or not ends:

@@ -9,12 +9,14 @@ import pytest
 from hypothesis import event, given, note, settings
 from hypothesis import strategies as st
 
-from epg.diagnostics import Diagnostics
-from epg.documents.yaml_file import parse_yaml
-from epg.edit.bindings import CannotEdit, End, ends_of, set_ends
+from epg.edit.applied import apply_edit, edits_of
+from epg.edit.bindings import CannotEdit, WireEnd, ends_of, set_ends
 from epg.edit.ends import data_of
 from epg.edit.scalars import scalar_text
-from epg.source import YamlNode
+from epg.generator.correction import KeyValue
+from epg.generator.diagnostics import LINE_BREAK, Diagnostic, Diagnostics
+from epg.generator.documents.yaml_file import parse_yaml
+from epg.generator.source import Span, YamlNode
 from tests.edit.bindings_texts import PORTS, Text, bindings_texts, ends
 from tests.edit.servo import model_of
 from tests.fuzz.long_run import PROFILE, examples
@@ -22,7 +24,7 @@ from tests.fuzz.long_run import PROFILE, examples
 MODEL = model_of(PORTS["inputs"], PORTS["outputs"])
 
 
-def _edits() -> st.SearchStrategy[tuple[str, str, tuple[End, ...] | None]]:
+def _edits() -> st.SearchStrategy[tuple[str, str, tuple[WireEnd, ...] | None]]:
     inputs = st.tuples(st.just("inputs"), st.sampled_from(PORTS["inputs"]), st.none() | ends.map(lambda end: (end,)))
     several = st.lists(ends, max_size=3, unique_by=lambda end: end.reference).map(tuple)
     outputs = st.tuples(st.just("outputs"), st.sampled_from(PORTS["outputs"]), st.none() | several)
@@ -39,11 +41,11 @@ def _root(text: str) -> YamlNode:
     return root
 
 
-def _data(section: str, said: tuple[End, ...] | None) -> object:
+def _data(section: str, said: tuple[WireEnd, ...] | None) -> object:
     return None if said is None else [data_of(end, section) for end in said]
 
 
-def _set(text: str, port: str, said: tuple[End, ...] | None) -> str:
+def _set(text: str, port: str, said: tuple[WireEnd, ...] | None) -> str:
     changed = set_ends(text, "servo.bindings.yaml", MODEL, port, said)
     note(f"--- {port} -> {said}\n{changed}")
     return changed
@@ -57,10 +59,10 @@ def _own_comments(file: Text, names: set[str]) -> set[str]:
     return {word for line in file.lines if line.owner in names for word in _comments(line.text)}
 
 
-@settings(PROFILE, max_examples=examples(200))
+@settings(PROFILE, max_examples=examples(120))
 @given(bindings_texts(), st.lists(edits, min_size=1, max_size=5))
 def test_what_is_wanted_is_said_and_comments_stay(
-    file: Text, told: list[tuple[str, str, tuple[End, ...] | None]]
+    file: Text, told: list[tuple[str, str, tuple[WireEnd, ...] | None]]
 ) -> None:
     text = before = file.text
     note(before)
@@ -97,9 +99,9 @@ def test_what_is_wanted_is_said_and_comments_stay(
         assert text.endswith("\n")
 
 
-@settings(PROFILE, max_examples=examples(200))
+@settings(PROFILE, max_examples=examples(120))
 @given(bindings_texts(), edits)
-def test_lines_of_others_are_untouched(file: Text, edit: tuple[str, str, tuple[End, ...] | None]) -> None:
+def test_lines_of_others_are_untouched(file: Text, edit: tuple[str, str, tuple[WireEnd, ...] | None]) -> None:
     section, port, said = edit
     note(file.text)
     after = _set(file.text, port, said).split(file.line_end)
@@ -113,7 +115,7 @@ def test_lines_of_others_are_untouched(file: Text, edit: tuple[str, str, tuple[E
         assert line.owner in may_change or line.text in rest
 
 
-@settings(PROFILE, max_examples=examples(200))
+@settings(PROFILE, max_examples=examples(120))
 @given(bindings_texts(), st.data())
 def test_there_and_back(file: Text, data: st.DataObject) -> None:
     note(file.text)
@@ -144,12 +146,39 @@ def test_there_and_back(file: Text, data: st.DataObject) -> None:
     event("changed" if old is not None else "added")
 
 
+@settings(PROFILE, max_examples=examples(120))
+@given(bindings_texts(), st.data())
+def test_an_edit_that_binds_a_port(file: Text, data: st.DataObject) -> None:
+    """The edit of a hint for a port that is not bound is what the page does when it connects the port."""
+    text = file.text.removeprefix("\ufeff")
+    note(text)
+    missing = [(section, port) for section, said in file.said.items() for port in PORTS[section] if port not in said]
+    if not missing:
+        event("nothing to do")
+        return
+    section, port = data.draw(st.sampled_from(missing))
+    hint = KeyValue("write it", "servo.bindings.yaml", (section, port), "encoder.reset", PORTS[section])
+    message = Diagnostic("unbound-input", "error", Span("servo.bindings.yaml", 1), "m", hint, about=port)
+    (edit,) = edits_of(message, lambda name: text if name == "servo.bindings.yaml" else None)
+    note(repr(edit))
+    after = apply_edit(text, edit)
+    assert after == set_ends(text, "servo.bindings.yaml", MODEL, port, (WireEnd("encoder.reset"),))
+    lines, end = LINE_BREAK.split(text), edit.end
+    assert len(lines[end[0] - 1]) >= end[1] - 1, "the place is in the text"
+    if edit.old == "":
+        event("insertion")
+        before = lines[edit.span.line - 1][: edit.span.column - 1]
+        is_line = LINE_BREAK.match(edit.new) and before == lines[edit.span.line - 1]
+        assert is_line or section in file.in_braces or {"{", "["} & set(before)
+    assert edits_of(message, lambda name: None) == []
+
+
 anything = st.text(st.characters(exclude_categories=()), min_size=1, max_size=12) | st.text(
     "ab.:#'\"{}[],&*!|>%@`\\ \n\r\t\x85\u2028-?~0é\U0001f916", min_size=1, max_size=8
 )
 
 
-@settings(PROFILE, max_examples=examples(200))
+@settings(PROFILE, max_examples=examples(120))
 @given(
     st.lists(anything, min_size=1, max_size=3, unique=True),
     anything,
@@ -160,12 +189,12 @@ def test_names_of_any_kind(names: list[str], reference: str, typed: str, rest: s
     names = [name for name in names if name != "x"]
     model = model_of((), (*names, "x"))
     text = before = "version: 1\nmodel: Servo\n" + rest
-    end = End(reference, typed, typed, (typed, "1"), typed)
+    end = WireEnd(reference, typed, typed, (typed, "1"), typed)
     there = []
     for name in names:
         note(text)
         try:
-            text = set_ends(text, "servo.bindings.yaml", model, name, (end, End("z")))
+            text = set_ends(text, "servo.bindings.yaml", model, name, (end, WireEnd("z")))
         except CannotEdit:
             # only characters that YAML cannot represent
             assert any("\ud800" <= character <= "\udfff" for character in name + reference + typed)

@@ -13,13 +13,13 @@ import pytest
 
 import epg.edit.bindings
 import epg.edit.scalars
-from epg.check.bindings import load_bindings
-from epg.diagnostics import Diagnostics
-from epg.documents import yaml_file
-from epg.documents.yaml_file import parse_yaml
-from epg.edit.bindings import CannotEdit, End, ends_of, set_ends
-from epg.models.model import Model
-from epg.source import YamlNode
+from epg.edit.bindings import CannotEdit, WireEnd, ends_of, set_ends
+from epg.generator.check.bindings import load_bindings
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents import yaml_file
+from epg.generator.documents.yaml_file import parse_yaml
+from epg.generator.models.model import Model
+from epg.generator.source import YamlNode
 from tests.edit.servo import model_of
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -34,7 +34,7 @@ def tree(text: str) -> YamlNode:
     return root
 
 
-def edited(text: str, port: str, ends: tuple[End, ...] | None, of: Model = SERVO) -> str:
+def edited(text: str, port: str, ends: tuple[WireEnd, ...] | None, of: Model = SERVO) -> str:
     return set_ends(text, "servo.bindings.yaml", of, port, ends)
 
 
@@ -42,7 +42,7 @@ def section_of(port: str, model: Model = SERVO) -> str:
     return "inputs" if port in [p.name for p in model.inputs] else "outputs"
 
 
-def _examples() -> dict[str, tuple[str, tuple[End, ...] | None, str, str]]:
+def _examples() -> dict[str, tuple[str, tuple[WireEnd, ...] | None, str, str]]:
     """The edit's description, the port, its ends, the file before and after."""
     found = {}
     for part in (Path(__file__).parent / "bindings_edits.txt").read_text(encoding="utf-8").split("=== ")[1:]:
@@ -88,17 +88,17 @@ def test_a_missing_last_line_end_stays_missing(what: str) -> None:
 
 TYPED = {
     "a number that is none": (
-        End("a", "1,5", "010", ("yes", "0x10"), "1"),
+        WireEnd("a", "1,5", "010", ("yes", "0x10"), "1"),
         "{from: a, scale: '1,5', offset: '010', limits: ['yes', 0x10], unit: '1'}",
     ),
-    "a line of its own": (End("a\ngo: b # c"), r'"a\u000Ago: b # c"'),
-    "brackets": (End("a}, go: {from: b", "[", "]", ("{", "}"), "{%"), None),
-    "comments": (End("a", "# x", "2 # x", ("2#", "-"), "# x"), None),
-    "words of YAML": (End("null", "true", "~", ("null", ""), "no"), None),
-    "not a number": (End("a", ".nan", "nan", ("-.inf", "inf")), None),
-    "blanks around": (End(" a\t", " 2 ", "\n1", ("0 ", " 1"), "rad "), "{from: a, scale: 2, offset: 1, "),
-    "other scripts": (End("größe", "½", "１", ("٣", "1_0"), "µm\u2028\U0001f916\x00"), None),
-    "long numbers": (End("a", "1" * 100, "1e999", ("1:30", "0b1"), "''"), None),
+    "a line of its own": (WireEnd("a\ngo: b # c"), r'"a\u000Ago: b # c"'),
+    "brackets": (WireEnd("a}, go: {from: b", "[", "]", ("{", "}"), "{%"), None),
+    "comments": (WireEnd("a", "# x", "2 # x", ("2#", "-"), "# x"), None),
+    "words of YAML": (WireEnd("null", "true", "~", ("null", ""), "no"), None),
+    "not a number": (WireEnd("a", ".nan", "nan", ("-.inf", "inf")), None),
+    "blanks around": (WireEnd(" a\t", " 2 ", "\n1", ("0 ", " 1"), "rad "), "{from: a, scale: 2, offset: 1, "),
+    "other scripts": (WireEnd("größe", "½", "１", ("٣", "1_0"), "µm\u2028\U0001f916\x00"), None),
+    "long numbers": (WireEnd("a", "1" * 100, "1e999", ("1:30", "0b1"), "''"), None),
 }
 
 
@@ -115,7 +115,7 @@ def test_what_somebody_types_is_reported_as_from_a_file(what: str, tmp_path: Pat
     assert problems.has_errors != (what == "blanks around")
     assert {problem.span.line for problem in problems} <= {4}
     assert "yaml" not in " ".join(problem.id for problem in problems)
-    text = edited(text, "angle", (End("a", "1/4", "1", ("0", "1"), "rad"),))
+    text = edited(text, "angle", (WireEnd("a", "1/4", "1", ("0", "1"), "rad"),))
     assert tree(text)["inputs"].plain()["angle"] == {
         "from": "a",
         "scale": "1/4",
@@ -125,21 +125,31 @@ def test_what_somebody_types_is_reported_as_from_a_file(what: str, tmp_path: Pat
     }
 
 
-REFUSED: dict[str, tuple[str, str, tuple[End, ...] | None, str]] = {
-    "no such port": ("inputs: {}\n", "angel", (End("a"),), "servo.bindings.yaml: Servo has no port 'angel'"),
+REFUSED: dict[str, tuple[str, str, tuple[WireEnd, ...] | None, str]] = {
+    "no such port": ("inputs: {}\n", "angel", (WireEnd("a"),), "servo.bindings.yaml: Servo has no port 'angel'"),
     "an input of nothing": ("", "angle", (), "servo.bindings.yaml: input 'angle' must be bound to one component"),
     "an input of two": (
         "",
         "angle",
-        (End("a"), End("b")),
+        (WireEnd("a"), WireEnd("b")),
         "servo.bindings.yaml: input 'angle' must be bound to one component",
     ),
-    "to be unconnected": ("", "log", (End("unconnected"),), "servo.bindings.yaml: 'unconnected' is not a component"),
-    "a section that is none": ("inputs: [a]\n", "angle", (End("a"),), "servo.bindings.yaml:4: 'inputs' is not a map"),
-    "a mistake": ("inputs: {\n", "angle", (End("a"),), "servo.bindings.yaml:4: this bracket is not closed"),
-    "an anchor": ("inputs: {angle: &a b}\n", "angle", (End("a"),), "servo.bindings.yaml:4: anchors and aliases"),
-    "no character": ("", "angle", (End("\ud800"),), "servo.bindings.yaml: a name or value for 'inputs' is not"),
-    "a key too long for YAML": ("outputs: {}\n", "x" * 1100, (End("a"),), "servo.bindings.yaml:4: 'xxx"),
+    "to be unconnected": (
+        "",
+        "log",
+        (WireEnd("unconnected"),),
+        "servo.bindings.yaml: 'unconnected' is not a component",
+    ),
+    "a section that is none": (
+        "inputs: [a]\n",
+        "angle",
+        (WireEnd("a"),),
+        "servo.bindings.yaml:4: 'inputs' is not a map",
+    ),
+    "a mistake": ("inputs: {\n", "angle", (WireEnd("a"),), "servo.bindings.yaml:4: this bracket is not closed"),
+    "an anchor": ("inputs: {angle: &a b}\n", "angle", (WireEnd("a"),), "servo.bindings.yaml:4: anchors and aliases"),
+    "no character": ("", "angle", (WireEnd("\ud800"),), "servo.bindings.yaml: a name or value for 'inputs' is not"),
+    "a key too long for YAML": ("outputs: {}\n", "x" * 1100, (WireEnd("a"),), "servo.bindings.yaml:4: 'xxx"),
 }
 
 
@@ -157,7 +167,7 @@ def test_a_port_that_the_model_has_no_more_can_be_taken_out() -> None:
     assert edited(text, "gone", None) == HEAD + "inputs:\n  duty: b   # an output\n"
     assert edited(edited(text, "gone", None), "duty", None) == HEAD + "inputs: {}\n"
     with pytest.raises(CannotEdit):
-        edited(text, "gone", (End("a"),))
+        edited(text, "gone", (WireEnd("a"),))
 
 
 def test_ends_of() -> None:
@@ -165,10 +175,10 @@ def test_ends_of() -> None:
         "inputs:\n  a: {from: x.y, scale: 1/4, offset: 0.50, limits: [-1, 1e3], unit: rad}\n  b: unconnected\n"
         "outputs:\n  c: unconnected\n  d: [x, {to: y, scale: 2}]\n"
     )
-    assert ends_of(root, "inputs", "a") == (End("x.y", "1/4", "0.5", ("-1", "1000.0"), "rad"),)
-    assert ends_of(root, "inputs", "b") == (End("unconnected"),), "only outputs can be unconnected"
+    assert ends_of(root, "inputs", "a") == (WireEnd("x.y", "1/4", "0.5", ("-1", "1000.0"), "rad"),)
+    assert ends_of(root, "inputs", "b") == (WireEnd("unconnected"),), "only outputs can be unconnected"
     assert ends_of(root, "outputs", "c") == ()
-    assert ends_of(root, "outputs", "d") == (End("x"), End("y", "2"))
+    assert ends_of(root, "outputs", "d") == (WireEnd("x"), WireEnd("y", "2"))
     assert ends_of(root, "outputs", "a") is None
 
 
@@ -186,7 +196,7 @@ def test_files_of_the_examples(path: Path) -> None:
         for port in ports:
             old = ends_of(root, section, port)
             assert old is not None
-            for new in ((End("other", scale="-1/3", limits=("0", "1")),), (End("other.port"),)):
+            for new in ((WireEnd("other", scale="-1/3", limits=("0", "1")),), (WireEnd("other.port"),)):
                 changed = edited(text, port, new, model)
                 assert ends_of(tree(changed), section, port) == new
                 assert sum(a != b for a, b in zip(text.splitlines(), changed.splitlines())) == 1

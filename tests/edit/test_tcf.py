@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 import epg.edit.tcf
-from epg.diagnostics import Diagnostics
-from epg.documents.yaml_file import parse_yaml
-from epg.edit.tcf import Value, remove_value, rename_key, set_value
+from epg.edit.tcf import JsonValue, remove_value, rename_key, set_value
 from epg.edit.yaml_edit import CannotEdit
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.yaml_file import parse_yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 CONFIGURATIONS = sorted([*ROOT.glob("examples/**/*.tcf"), *ROOT.glob("targets/**/*.tcf")])
@@ -127,7 +127,7 @@ components:
   light: {kind: digital_output, pins: {value: GP6}}
 """
 
-SET: dict[str, tuple[list[str], Value, str, str]] = {
+SET: dict[str, tuple[list[str], JsonValue, str, str]] = {
     "a quantity": (["components", "motor", "frequency"], "1.5 kHz", "frequency: 20 kHz  #", "frequency: 1.5 kHz  #"),
     "a pin": (["components", "light", "pins", "value"], "GP7", "pins: {value: GP6}}", "pins: {value: GP7}}"),
     "a number for a text": (["components", "motor", "frequency"], 3, "frequency: 20 kHz", "frequency: 3"),

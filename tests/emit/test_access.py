@@ -12,7 +12,9 @@ from pathlib import Path
 import pytest
 
 from epg.cli.main import main
-from epg.emit.access import unique_words
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.emit.access import unique_words
+from epg.generator.emit.model.variables import model_variables
 from tests.fuzz.compiler import ROOT, compile_outputs, include_options, needs_compiler
 from tests.platforms.host.program import ADDRESS_SANITIZER, TARGETS, THREAD_SANITIZER, platform_sources
 from tests.runtime.program import compile_program, run_program
@@ -73,7 +75,8 @@ def test_the_header_declares_a_function_for_each_value(tmp_path: Path) -> None:
     comment = header[: header.index("bool robot_set_speed")].rpartition("/**")[2]
     assert " ".join(comment.split()) == (
         "Sets `speed` as a message for components.speed.linear_x does, in m/s. The model's input is the value * "
-        "1000.0, limited to -2000.0 to 2000.0. It changes by at most 1e+06 per second. "
+        "1000.0. A value outside of -2.0 to 2.0 is refused. Only values after the enabling act. "
+        "It changes by at most 1e+06 per second. "
         "After 10 s without a new value it becomes 0. */"
     )
     assert "Sets `x` as a message for components.set_x does, in rad.  Sets `again`, too. */" in header
@@ -101,9 +104,12 @@ def test_a_program_beside_messages_and_cycles(middleware: str, sanitizer: list[s
     console = TARGETS / "middlewares" / "console"
     sources = [*sorted((tmp_path / "out").glob("*.c")), *platform_sources(main=False), tmp_path / "main.c"]
     sources += sorted((tmp_path / "model").glob("*.c"))
+    no_variables = tmp_path / "no_variables.c"
+    no_variables.write_text(model_variables("robot_model", 1, [], Diagnostics())[1], encoding="utf-8")
+    sources.append(no_variables)
     program = compile_program(
         tmp_path / "program",
-        [*sources, *(sorted(console.glob("*.c")) if middleware == "console" else [])],
+        list(dict.fromkeys([*sources, *(sorted(console.glob("*.c")) if middleware == "console" else [])])),
         options=["-O1", *sanitizer],
         defines=["SHARED"] if middleware == "console" else [],
         includes=[tmp_path / "out", tmp_path / "model", console, *map(Path, folders), TARGETS / "platforms/host/src"],

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from epg.data import data_folder
-from epg.diagnostics import Diagnostics
-from epg.emit.cmake import PathNames
-from epg.emit.outputs import application_outputs
-from epg.project import Request, load_application
+from epg.generator.data import data_folder
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.emit.cmake import PathNames
+from epg.generator.emit.outputs import application_outputs
+from epg.generator.project import Request, load_application
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "jiwy"
 ROBOTS = data_folder("targets") / "robots" / "jiwy"
@@ -29,7 +29,7 @@ def copy(folder: Path) -> Path:
 
 
 def generate(folder: Path, *settings: str, name: str = "jiwy", roots: tuple[Path, ...] = ()) -> dict[str, str]:
-    from epg.source import Span
+    from epg.generator.source import Span
 
     request = Request(
         name,

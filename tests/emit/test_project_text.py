@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from epg.emit.template import environment
-from epg.emit.text import ProjectText, line, word
+from epg.generator.emit.template import environment
+from epg.generator.emit.text import ProjectText, line, word
 
 
 @given(st.text(max_size=40))

@@ -18,9 +18,9 @@ GUARD = "  {}: {{kind: motion_guard, actuator: motor, encoder: encoder, homing: 
 COMMUNICATION = "communication: {middleware: micro_ros, console: true}\n"
 
 
-def generate(folder: Path, target: str, components: list[str]) -> str:
-    """The text of ``<target>_app.c``.  The ``components`` are added to those of a robot."""
-    shutil.copytree(COMMON, folder, dirs_exist_ok=True)
+def generate(folder: Path, target: str, components: list[str], common: Path = COMMON) -> str:
+    """The text of ``<target>_app.c``.  The ``components`` are added to those of the robot in ``common``."""
+    shutil.copytree(common, folder, dirs_exist_ok=True)
     robot = folder / "robot.tcf"
     text = robot.read_text(encoding="utf-8").replace("rpi_pico_bare_metal", "host")
     text = COMMUNICATION + text + "".join(GUARD.format(component) for component in components)
@@ -45,3 +45,18 @@ def test_no_name_is_defined_twice(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         definitions = Counter(defined(generate(tmp_path, target, components)))
         assert definitions.total() > len(names)
         assert set(definitions.values()) == {1}, (target, components, definitions)
+
+
+def test_functions_for_ports_and_components_have_different_names(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """``robot_set_go_component()`` sets the port of this name; ``set_go`` is a component."""
+    monkeypatch.chdir(tmp_path)
+    own = Path(shutil.copytree(COMMON, tmp_path / "own"))
+    for file in ("bindings.yaml", "model/model.yaml", "model/controller.h", "model/controller.c"):
+        path = own / file
+        path.write_text(re.sub(r"\bsetpoint\b", "go_component", path.read_text(encoding="utf-8")), encoding="utf-8")
+    code = generate(tmp_path, "robot", ["set_go", "component_set_go"], own)
+    header = (tmp_path / "out/robot.h").read_text(encoding="utf-8")
+    assert "robot_set_go_component(" in header and "robot_set_go_component" not in defined(code)
+    assert set(Counter(defined(code)).values()) == {1}

@@ -13,8 +13,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from epg.emit.template import FILTERS, environment
-from epg.emit.text import (
+from epg.generator.emit.template import FILTERS, environment
+from epg.generator.emit.text import (
     CMakeCode,
     Code,
     DevicetreeCode,
@@ -157,7 +157,7 @@ def test_names_that_cannot_be_included(name: str) -> None:
 
 @settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.text(alphabet=st.characters(codec="utf-8", exclude_characters="\0"), max_size=20))
-@pytest.mark.skipif(not shutil.which("dtc"), reason="dtc is missing: apt install device-tree-compiler")
+@pytest.mark.skipif(not shutil.which("dtc"), reason="dtc is not installed: sudo apt install device-tree-compiler")
 def test_devicetree_strings_hold_any_text(tmp_path: Path, text: str) -> None:
     source = f"/dts-v1/;\n/ {{ x = {devicetree_string(text)}; }};\n"
     blob = subprocess.run(

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from epg.cli.output import update_folder
-from epg.emit.writer import write_outputs
+from epg.generator.emit.writer import write_outputs
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -51,7 +51,7 @@ def test_a_failure_leaves_the_old_file_and_no_other(tmp_path: Path, monkeypatch:
 
 def test_the_next_run_removes_what_a_killed_one_has_left(tmp_path: Path) -> None:
     killed = (
-        "import os, signal\nfrom pathlib import Path\nfrom epg.emit.writer import write_outputs\n"
+        "import os, signal\nfrom pathlib import Path\nfrom epg.generator.emit.writer import write_outputs\n"
         "os.replace = lambda *_: os.kill(os.getpid(), signal.SIGKILL)\n"
         f"write_outputs(Path({str(tmp_path)!r}), {{'a': '1'}})\n"
     )

@@ -12,7 +12,7 @@ import subprocess
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from epg.bootstrap import cache_folder
+from epg.generator.bootstrap import cache_folder
 
 from .toolchain import HERE, ROOT, Missing, arm_gcc, locked, pico_sdk, tool
 

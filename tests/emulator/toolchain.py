@@ -22,10 +22,10 @@ from typing import Any
 
 import pytest
 
-from epg.bootstrap import cache_folder
-from epg.diagnostics import Diagnostics
-from epg.tools.find_tool import Surroundings, find_tool
-from epg.tools.tools import load_tools
+from epg.generator.bootstrap import cache_folder
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.tools.find_tool import Surroundings, find_tool
+from epg.generator.tools.tools import load_tools
 
 ROOT = Path(__file__).resolve().parents[2]
 HERE = Path(__file__).resolve().parent
@@ -74,7 +74,7 @@ def node() -> str:
     """The program node."""
     program = shutil.which("node")
     if program is None:
-        raise Missing("Node.js is not installed: apt install nodejs npm")
+        raise Missing("Node.js with npm is not installed: sudo apt install nodejs npm")
     version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout.strip()
     if int(version.lstrip("v").split(".")[0]) < OLDEST_NODE:
         raise Missing(f"Node.js {version} is older than {OLDEST_NODE}: install a newer one from https://nodejs.org")
@@ -104,7 +104,7 @@ def npm_package(locked_by: Path, name: str) -> Path:
 def _install_package(locked_by: Path, name: str, folder: Path) -> None:
     npm = shutil.which("npm")
     if npm is None:
-        raise Missing("npm is not installed: apt install nodejs npm")
+        raise Missing("Node.js with npm is not installed: sudo apt install nodejs npm")
     if os.environ.get("EPG_NO_INSTALL"):
         raise Missing(f"{name} is not in EPG's cache and EPG_NO_INSTALL is set: npm ci --prefix {folder}")
     folder.mkdir(parents=True, exist_ok=True)

@@ -11,9 +11,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-from epg.data import targets_roots
-from epg.diagnostics import Diagnostics
-from epg.tools.tools import load_tools
+from epg.generator.data import targets_roots
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.tools.tools import load_tools
 from tests.emulator.toolchain import Missing, arm_gcc, pico_sdk, skip_if_missing, tool
 
 ROOT = Path(__file__).resolve().parent.parent.parent

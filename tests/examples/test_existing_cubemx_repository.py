@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from epg.diagnostics import Diagnostics
-from epg.documents.ioc_file import read_ioc
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.ioc_file import read_ioc
 from tests.emulator.toolchain import arm_gcc, skip_if_missing, tool
 from tests.examples.pico_project import ROOT, environment
 

@@ -122,7 +122,7 @@ def test_careless_exported_code_fails_no_build(tmp_path: Path) -> None:
 def board(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The example, built for the board: its CMakeLists.txt makes warnings errors, also in EPG's code."""
     if shutil.which("arm-none-eabi-gcc") is None:
-        pytest.skip("no arm-none-eabi-gcc: apt install gcc-arm-none-eabi libnewlib-arm-none-eabi")
+        pytest.skip("arm-none-eabi-gcc is not installed: sudo apt install gcc-arm-none-eabi libnewlib-arm-none-eabi")
     repository = copy(tmp_path_factory.mktemp("board"))
     configure(repository, "nucleo_h743zi")
     run(repository, "cmake", "--build", "--preset", "nucleo_h743zi")

@@ -76,7 +76,7 @@ NEEDED = {
     "PICO_CORE1_STACK_SIZE", "PICO_DOUBLE_PROPAGATE_NANS", "PICO_USE_STACK_GUARDS",
     # <name>.h, epg/control.h, epg/pico.h, epg/pico_quadrature.h, tusb_config.h, tusb.h
     "build/epg/turntable", "targets/runtime/include", "targets/families/rp2/include",
-    "targets/platforms/mcu/include",
+    "targets/mcu/include",
     "targets/libraries/pico_quadrature/include", "targets/families/rp2/usb/include", "lib/tinyusb/src",
 }  # fmt: skip
 """Definitions and include folders that EPG adds to the commands for the program's own files."""

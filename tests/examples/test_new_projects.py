@@ -12,13 +12,10 @@ import pytest
 
 import epg
 from epg.cli.main import main
-from tests.emulator.toolchain import pico_sdk
 from tests.examples.pico_project import (
     ROOT,
     configure,
     run,
-    sdk_of_new_projects,
-    skip_unless_buildable,
 )
 
 JIWY = ROOT / "examples/jiwy/model"
@@ -133,16 +130,6 @@ def fake_compiler(home: Path, version: str = "14_2_Rel1") -> Path:
     return folder
 
 
-def programs(folder: Path, *names: str) -> str:
-    """A PATH with only these programs."""
-    folder.mkdir(parents=True)
-    for name in names:
-        found = shutil.which(name)
-        assert found, name
-        (folder / name).symlink_to(found)
-    return str(folder)
-
-
 class User:
     """A user with a new project, a home folder, and the tools that the test puts into it."""
 
@@ -168,21 +155,6 @@ def errors(output: str) -> int:
     return output.count("CMake Error")
 
 
-def test_no_sdk(user: User) -> None:
-    fake_compiler(user.home)
-    output = user.configure("-DFETCHCONTENT_FULLY_DISCONNECTED=ON")
-    assert "Raspberry Pi Pico SDK was not found. Get it: git clone --depth 1 --branch 2.2.0 " in output
-    assert f"pico-sdk.git {user.home}/.cache/epg/pico-sdk-2.2.0" in output
-    assert errors(output) == 1
-
-
-def test_no_compiler(user: User, tmp_path: Path) -> None:
-    fake_sdk(user.home, "2.2.0")
-    output = user.configure("-DFETCHCONTENT_FULLY_DISCONNECTED=ON", PATH=programs(tmp_path / "bin", "cmake", "ninja"))
-    assert "Arm GNU toolchain was not found. Get it: " in output
-    assert errors(output) == 1
-
-
 def test_another_sdk(user: User) -> None:
     """The installed SDK has another version than the project needs: the message gives both solutions."""
     folder = fake_sdk(user.home, "2.1.1")
@@ -199,16 +171,6 @@ def test_another_sdk(user: User) -> None:
         assert (
             f"This project is written for version 2.2.0 of the Raspberry Pi Pico SDK, but the one in {folder}" in output
         )
-
-
-def test_an_sdk_that_is_too_old(user: User) -> None:
-    file = user.project / "CMakeLists.txt"
-    file.write_text(file.read_text().replace("set(sdkVersion 2.2.0)", "set(sdkVersion 1.5.1)"))
-    folder = fake_sdk(user.home, "1.5.1")
-    fake_compiler(user.home)
-    output = user.configure()
-    assert f"The Raspberry Pi Pico SDK in {folder} is 1.5.1; EPG needs 2.0.0 or newer. Get it: git clone" in output
-    assert errors(output) == 1
 
 
 def test_of_several_sdks_the_projects_is_taken(user: User) -> None:
@@ -236,27 +198,6 @@ def test_the_vs_code_extensions_file_is_heeded(user: User) -> None:
     assert f"taken: {user.home}/.pico-sdk/sdk/2.2.0" in user.configure()
 
 
-def cache_without(folder: Path, name: str) -> str:
-    """A copy of EPG's cache without one entry."""
-    from epg.bootstrap import cache_folder
-
-    folder.mkdir()
-    for entry in cache_folder().iterdir():
-        if not entry.name.startswith(name):
-            (folder / entry.name).symlink_to(entry)
-    return str(folder)
-
-
-def test_no_kernel(user: User, tmp_path: Path) -> None:
-    skip_unless_buildable(sdk_of_new_projects)
-    (user.home / ".pico-sdk").symlink_to(Path.home() / ".pico-sdk")
-    cache = cache_without(tmp_path / "cache", "FreeRTOS-Kernel")
-    output = user.configure(f"-DPICO_SDK_PATH={pico_sdk()}", EPG_CACHE=cache)
-    assert "FreeRTOS kernel was not found. Get it: git clone --depth 1 --branch V11.3.0 " in output
-    assert f"{cache}/FreeRTOS-Kernel-11.3.0" in output
-    assert errors(output) == 1
-
-
 def test_another_kernel(user: User) -> None:
     kernel = user.home / ".cache/epg/FreeRTOS-Kernel-10.6.2"
     (kernel / "include").mkdir(parents=True)
@@ -265,15 +206,6 @@ def test_another_kernel(user: User) -> None:
     fake_sdk(user.home, "2.2.0")
     output = user.configure()
     assert f"version 11.3.0 of the FreeRTOS kernel, but the one in {kernel} is 10.6.2. Get it: git clone" in output
-    assert errors(output) == 1
-
-
-def test_no_picotool_and_no_network(user: User) -> None:
-    fake_sdk(user.home, "2.2.0")
-    fake_compiler(user.home)
-    output = user.configure("-DFETCHCONTENT_FULLY_DISCONNECTED=ON")
-    assert "picotool was not found (without one the Pico SDK fetches and builds one" in output
-    assert "Or configure with -DPICO_NO_PICOTOOL=1" in output
     assert errors(output) == 1
 
 

@@ -6,7 +6,6 @@ from __future__ import annotations
 import json
 import math
 import random
-import shutil
 import signal
 import statistics
 import subprocess
@@ -20,7 +19,8 @@ import pytest
 
 pytest.importorskip("tests.ros2.packages", exc_type=ImportError)
 
-from epg import bootstrap
+from epg.generator import bootstrap
+from tests.cmake.built import cmake_and_ninja
 from tests.emulator.toolchain import skip_if_missing, tool
 from tests.examples.pico_project import configure, run
 from tests.ros2.network import Network, network, running
@@ -41,9 +41,7 @@ Build = Callable[[str], Path]
 
 
 def host_build(folder: Path, middleware: str) -> Build:
-    for program, package in (("cmake", "cmake"), ("ninja", "ninja-build")):
-        if not shutil.which(program):
-            pytest.skip(f"{program} is missing: apt install {package}")
+    skip_if_missing(cmake_and_ninja)
     configure(EXAMPLE, f"-DPING_PONG_MIDDLEWARE={middleware}", build=folder)
 
     def build(name: str) -> Path:

@@ -14,7 +14,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 STRICT = ["-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Werror"]
-needs_compiler = pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is missing: apt install gcc")
+needs_compiler = pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is not installed: sudo apt install gcc")
 
 
 def include_options(cmake: str) -> list[str]:

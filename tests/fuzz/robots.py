@@ -13,8 +13,8 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from epg.check.names import STANDARD_HEADERS, identifier_problem
-from epg.models.identifiers import is_reserved
+from epg.generator.check.names import STANDARD_HEADERS, identifier_problem
+from epg.generator.models.identifiers import is_reserved
 
 ARGUMENTS = ("--tcf", "robot.tcf", "--model", "model", "--bindings", "bindings.yaml")
 
@@ -174,6 +174,8 @@ def ros_components(draw: st.DrawFn, name: str, kind: str, topic: str) -> Compone
     else:
         maybe("on_change", flags)
     _conversion(draw, text)
+    if direction == "source":
+        text.pop("limits", None)  # with random initial values, they would be a mistake
     parts: list[tuple[str, str]] = [("", "")]
     if "array" in kind:
         text["values"] = draw(st.lists(names, min_size=1, max_size=5, unique_by=str.casefold))
@@ -260,6 +262,10 @@ def robots(draw: st.DrawFn, most: int = 8) -> Robot:
         tcf["communication"] = draw(communications())
     bindings: dict[str, Any] = {"version": 1, "model": "Random"}
     bindings["inputs"] = {name: _end(draw, end, "from") for name, end in inputs.items()}
+    setpoints = {part.name for part in parts if str(part.text["kind"]).endswith("subscriber")}
+    for value in bindings["inputs"].values():
+        if isinstance(value, dict) and str(value["from"]).partition(".")[0] in setpoints:
+            value.pop("limits", None)  # as above
     bindings["outputs"] = {
         name: [_end(draw, end, "to") for end in ends] if ends else "unconnected" for name, ends in outputs.items()
     }

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from epg.diagnostics import Diagnostics
-from epg.models import load_model
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.importers import load_model
 from tests.fuzz.long_run import LONG
 from tests.fuzz.project import TookTooLong, time_limit
 from tests.models.exports import Export

@@ -9,13 +9,13 @@ With clang, a longer search (docs/development.md):
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import Missing
+from tests.cmake.built import built
+from tests.emulator.toolchain import skip_if_missing
 from tests.xrce_agent.bare import libraries
 
 PROJECT = Path(__file__).resolve().parent / "xrce"
@@ -25,21 +25,8 @@ INPUTS = 20_000
 @pytest.fixture(scope="module")
 def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of the programs, built with sanitizers."""
-    try:
-        libraries()
-    except Missing as missing:
-        pytest.skip(str(missing))
-    for tool, package in (("cmake", "cmake"), ("ninja", "ninja-build")):
-        if not shutil.which(tool):
-            pytest.skip(f"{tool} is missing: apt install {package}")
-    folder = tmp_path_factory.mktemp("received_bytes")
-    for command in (
-        ["cmake", "-S", str(PROJECT), "-B", str(folder), "-G", "Ninja"],
-        ["cmake", "--build", str(folder)],
-    ):
-        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
-        assert done.returncode == 0, done.stdout + done.stderr
-    return folder
+    skip_if_missing(libraries)
+    return built(PROJECT, tmp_path_factory.mktemp("received_bytes"))
 
 
 @pytest.mark.parametrize("name", ["xrce_fuzz", "message_fuzz"])

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from epg.catalog.catalog import load_catalog
 from epg.cli.main import main
-from epg.data import targets_roots
-from epg.diagnostics import Diagnostics
+from epg.generator.catalog.catalog import load_catalog
+from epg.generator.data import targets_roots
+from epg.generator.diagnostics import Diagnostics
 from epg.graph.svg import Picture
 from tests.graph.pictures import Line, Svg
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from epg.diagnostics import Diagnostics
-from epg.graph.tracking import draw_tracking as draw
-from epg.graph.tracking import ticks
+from epg.generator.diagnostics import Diagnostics
+from epg.graph.tracking_picture import draw_tracking as draw
+from epg.graph.tracking_picture import ticks
 from epg.simulate.load_scenario import load_scenario
 
 SCENARIO = """version: 1

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from epg import bootstrap
 from epg.cli.main import main
+from epg.generator import bootstrap
 
 from .robot import BOTH, JOG, Physics, Run, drive, plan
 

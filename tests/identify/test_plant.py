@@ -8,26 +8,26 @@ from pathlib import Path
 
 import pytest
 
-from epg import bootstrap
-from epg.check.formulas import FormulaError, parse_formula
-from epg.diagnostics import Diagnostics
+from epg.generator import bootstrap
+from epg.generator.check.formulas import FormulaError, parse_formula
+from epg.generator.diagnostics import Diagnostics
 
 bootstrap.ensure("plot")
-from epg.identify.fit import Fit, Value  # noqa: E402  # only after the check that its packages can be imported
-from epg.identify.plant import (  # noqa: E402
+from epg.identify.bound_plant import (  # noqa: E402
+    BoundPlant,
     NoSolution,
-    Plant,
     changed_text,
     load_plant,
     motor_for,
     solved,
     wanted_values,
 )
+from epg.identify.fit import Fit, FittedValue  # noqa: E402  # only after the check that its packages can be imported
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 
-def load(robot: str, bindings: Path | None = None) -> Plant:
+def load(robot: str, bindings: Path | None = None) -> BoundPlant:
     diagnostics = Diagnostics()
     folder = EXAMPLES / robot
     found = load_plant(folder / "plant", bindings or folder / "plant.bindings.yaml", diagnostics)
@@ -80,8 +80,8 @@ def test_conversions_of_the_plants_wires_are_considered(tmp_path: Path) -> None:
     path.write_text(text.replace("angle_pan: encoder_pan", "angle_pan: {to: encoder_pan, scale: -1/2}"), "utf-8")
     plant = load("jiwy", path)
     motor = plant.bindings.motors["duty_pan"]
-    one = Value(0.0, 0.0)
-    fit = Fit(Value(16.0, 0.1), Value(0.03, 0.001), Value(0.01, 0.001), one, None, 0.0)
+    one = FittedValue(0.0, 0.0)
+    fit = Fit(FittedValue(16.0, 0.1), FittedValue(0.03, 0.001), FittedValue(0.01, 0.001), one, None, 0.0)
     own = wanted_values(motor, plant.bindings, fit, "actuators.pwm_pan", "encoders.encoder_pan")
     assert own == [32.0, 0.03, 0.01]
     assert wanted_values(motor, plant.bindings, fit, "plant.inputs.duty_pan", "plant.outputs.angle_pan")[0] == 16.0

@@ -23,12 +23,14 @@ from pathlib import Path
 
 import pytest
 
-from epg import bootstrap
-from epg.diagnostics import Diagnostics
-from epg.identify.plant import Plant, load_plant
+from epg.generator import bootstrap
+from epg.generator.diagnostics import Diagnostics
+from epg.identify.bound_plant import BoundPlant, load_plant
 from epg.live.client import Client
-from epg.live.port import Port
-from epg.live.rows import CsvFile, Recording, Stream
+from epg.live.port import SerialPort
+from epg.live.rows import Recorder, Stream
+from epg.runs.csv_file import CsvFile
+from tests.waiting import until
 
 bootstrap.ensure("plot")
 
@@ -70,7 +72,7 @@ class Project:
             assert done.returncode == 0, done.stdout + done.stderr
         return build / "jiwy_host"
 
-    def plant(self) -> Plant:
+    def plant(self) -> BoundPlant:
         diagnostics = Diagnostics()
         found = load_plant(self.example / "plant", self.example / "plant.bindings.yaml", diagnostics)
         return diagnostics.checked(found)
@@ -83,9 +85,7 @@ class Project:
         command = [str(program), "--realtime", "--console-pty", str(port)]
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL, cwd=self.folder)
         try:
-            end = time.monotonic() + 10
-            while not port.exists() and time.monotonic() < end:
-                time.sleep(0.01)
+            until(port.exists, "the robot has no port")
             yield port
         finally:
             process.kill()
@@ -134,7 +134,7 @@ def page_command(start: str) -> str:
 def project(tmp_path_factory: pytest.TempPathFactory) -> Project:
     for tool in ("cmake", "ninja"):
         if not shutil.which(tool):
-            pytest.skip(f"{tool} is missing: apt install {tool}")
+            pytest.skip(f"{tool} is not installed: sudo apt install {tool}")
     return Project(tmp_path_factory.mktemp("identify"))
 
 
@@ -180,13 +180,13 @@ def test_the_written_plant_moves_as_the_robot_does(project: Project) -> None:
 
 def test_a_step_while_the_robot_is_enabled_gives_the_same_values(project: Project) -> None:
     names = ["actuators.pwm_pan", "encoders.encoder_pan"]
-    with project.running(project.robot) as path, Port(path) as port:
+    with project.running(project.robot) as path, SerialPort(path) as port:
         client = Client(port)
         try:
-            client.command("enable leased")
+            client.enable()
             time.sleep(5.0)  # homing
             sink = CsvFile(project.folder / "step.csv", names)
-            recording = Recording(Stream(names), [sink])
+            recording = Recorder(Stream(names), [sink])
             known = [signal.name for signal in client.description.streamed]
             recording.start(client, [known.index(name) for name in names], 1)
             for setpoint in (1.2, 0.4):

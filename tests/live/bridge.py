@@ -2,8 +2,8 @@
 """A line between a target and a program, as a process of its own: ``bridge.py TARGET_PORT OWN_PORT``.
 
 It passes bytes on in both directions.  SIGUSR1: it sends garbage in both directions instead, as much as both ends take.
-SIGUSR2: it sends garbage between the bytes that it passes on.  It prints "ready", and at each signal the time of
-:func:`time.monotonic` from which on it acts so.
+SIGUSR2: it sends garbage between the bytes that it passes on.  SIGHUP: it passes bytes on to the target :data:`DELAY`
+later.  It prints "ready", and at each signal the time of :func:`time.monotonic` from which on it acts so.
 """
 
 from __future__ import annotations
@@ -15,10 +15,13 @@ import signal
 import sys
 import time
 import tty
+from collections import deque
 from pathlib import Path
 
 PIECE = 256
 """Bytes of garbage between two looks at the line."""
+DELAY = 0.15
+"""Seconds that a byte takes on a slow line."""
 
 
 def main(target: Path, own: Path) -> None:
@@ -32,6 +35,7 @@ def main(target: Path, own: Path) -> None:
 
     signal.signal(signal.SIGUSR1, lambda *_: become("garbage"))
     signal.signal(signal.SIGUSR2, lambda *_: become("between"))
+    signal.signal(signal.SIGHUP, lambda *_: become("slow"))
     board = os.open(target, os.O_RDWR | os.O_NOCTTY)
     tty.setraw(board)
     near, far = os.openpty()  # `far` stays open: the port exists until this process ends
@@ -41,17 +45,23 @@ def main(target: Path, own: Path) -> None:
     for file in other:
         os.set_blocking(file, False)
     waiting = {board: b"", near: b""}
+    under_way: deque[tuple[float, bytes]] = deque()  # on a slow line: the bytes to the target, and when they arrive
     print("ready", flush=True)
     while True:
-        writable = [file for file in other if waiting[file] or mode != "pass"]
-        readable, ready, _ = select.select(list(other), writable, [], 0.1)
+        noisy = mode in ("garbage", "between")
+        writable = [file for file in other if waiting[file] or noisy]
+        readable, ready, _ = select.select(list(other), writable, [], 0.001 if under_way else 0.1)
         for file in readable:
             data = os.read(file, 4096)
-            if mode != "garbage" and len(waiting[other[file]]) < 65536:
+            if mode == "slow" and other[file] == board:
+                under_way.append((time.monotonic() + DELAY, data))
+            elif mode != "garbage" and len(waiting[other[file]]) < 65536:
                 waiting[other[file]] += data
+        while under_way and under_way[0][0] <= time.monotonic():
+            waiting[board] += under_way.popleft()[1]
         for file in ready:
             data = waiting[file] if mode != "garbage" else b""
-            garbage = draw.randbytes(PIECE) if mode != "pass" else b""
+            garbage = draw.randbytes(PIECE) if noisy else b""
             try:
                 sent = os.write(file, data + garbage)
             except BlockingIOError:

@@ -8,13 +8,14 @@ import os
 import pty
 import re
 import select
-import shutil
 import subprocess
 import sys
 import time
 from pathlib import Path
 
 import pytest
+
+from tests.cmake.built import SANITIZERS, built
 
 from .target import Target
 
@@ -30,16 +31,8 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def build_programs(build: Path, *targets: str) -> Path:
     """Builds the programs, or only ``targets``, in the folder ``build``."""
-    for tool, package in (("cmake", "cmake"), ("ninja", "ninja-build")):
-        if not shutil.which(tool):
-            pytest.skip(f"{tool} is missing: apt install {package}")
-    flags = "-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all"
-    options = [f"-DPython3_EXECUTABLE={sys.executable}", f"-DCMAKE_C_FLAGS={flags}", f"-DCMAKE_CXX_FLAGS={flags}"]
-    chosen = [word for target in targets for word in ("--target", target)]
-    for command in (["-S", str(PROJECT), "-B", str(build), "-G", "Ninja", *options], ["--build", str(build), *chosen]):
-        done = subprocess.run(["cmake", *command], capture_output=True, text=True, check=False, timeout=600)
-        assert done.returncode == 0, done.stdout + done.stderr
-    return build
+    options = (f"-DCMAKE_C_FLAGS={SANITIZERS}", f"-DCMAKE_CXX_FLAGS={SANITIZERS}")
+    return built(PROJECT, build, *options, targets=targets)
 
 
 def epg(*arguments: str | Path, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:

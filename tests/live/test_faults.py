@@ -6,9 +6,9 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from epg.catalog.catalog import load_catalog
-from epg.data import targets_roots
-from epg.diagnostics import Diagnostics
+from epg.generator.catalog.catalog import load_catalog
+from epg.generator.data import targets_roots
+from epg.generator.diagnostics import Diagnostics
 from epg.live.faults import Faults, runtime_faults
 
 ROOT = Path(__file__).resolve().parents[2]

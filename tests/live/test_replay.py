@@ -14,8 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from epg.live.client import Description, Refused, Signal
-from epg.live.recording import signals_to_record
+from epg.live.client import CommandRefused, StreamedSignal, TargetDescription
+from epg.live.replay_file import signals_to_record
 
 from .replays import ROOT, Text, cells, epg, record, record_at_terminal
 from .target import Target
@@ -304,8 +304,8 @@ def test_a_program_refuses_wrong_recordings_by_itself(text: Text, programs: Path
     ],
 )
 def test_a_target_that_cannot_be_recorded(ports: int, extra: int, text: str) -> None:
-    signals = tuple(Signal(f"inputs.{number}", "") for number in range(ports))
-    replay = tuple(Signal(f"replay.{number}", "") for number in range(extra))
-    found = Description("a", "a", "1", "2", "3", 0.001, (), (), signals, (), replay, (), (), (), (), ())
-    with pytest.raises(Refused, match=re.escape(text)):
+    signals = tuple(StreamedSignal(f"inputs.{number}", "") for number in range(ports))
+    replay = tuple(StreamedSignal(f"replay.{number}", "") for number in range(extra))
+    found = TargetDescription("a", "a", "1", "2", "3", 0.001, (), (), signals, (), replay, (), (), (), (), ())
+    with pytest.raises(CommandRefused, match=re.escape(text)):
         signals_to_record(found)

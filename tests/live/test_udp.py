@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-import os
+import csv
 import random
 import socket
 import struct
@@ -19,12 +19,16 @@ from epg.live import frames
 from epg.live.client import Client, Rows
 from epg.live.port import PortError
 from epg.live.udp import PortTaken, UdpPort, disable, parse
+from tests.waiting import PATIENCE, until, waited
 
+from .target import check_every_cycle_has_a_row, client_of, let_pass
 from .test_live import live
-from .udp_target import UdpTarget, client_of
+from .udp_target import UdpTarget, is_soon_disabled
 
 BEGIN, END, DISABLE = 1, 2, 4
 RUNNING, OVER, DISABLED, TAKEN = 1, 2, 4, 8
+KEPT = 0.7
+"""Seconds of rows of 20 signals for which a target has memory, until its communication thread has a processor."""
 
 
 @pytest.fixture
@@ -41,7 +45,7 @@ class Person:
     def __init__(self, target: UdpTarget) -> None:
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.socket.connect(("127.0.0.1", target.number))
-        self.socket.settimeout(2)
+        self.socket.settimeout(PATIENCE)
 
     @property
     def name(self) -> str:
@@ -62,8 +66,9 @@ class Program:
     def __init__(self, target: UdpTarget, session: int = 77) -> None:
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.socket.connect(("127.0.0.1", target.number))
-        self.socket.settimeout(2)
+        self.socket.settimeout(PATIENCE)
         self.session = session
+        self._lines: dict[int, str] = {}
 
     def send(self, flags: int, number: int = 0, line: str = "", lowest: int = 0, received: int = 0) -> None:
         body = frames.encode(b"C\1" + line.encode()) if line else b""
@@ -73,22 +78,38 @@ class Program:
         """The flags of the next datagram."""
         return self.socket.recv(4096)[4]
 
-    def lines(self, seconds: float) -> list[str]:
-        """The different lines of answers that arrive within this time, in their order."""
-        end = time.monotonic() + seconds
-        found: dict[int, str] = {}
-        while (left := end - time.monotonic()) > 0:
-            self.socket.settimeout(left)
-            try:
-                data = self.socket.recv(4096)
-            except TimeoutError:
-                break
+    def lines(self, last: str) -> list[str]:
+        """All lines of answers so far, in their order, as soon as one that begins with ``last`` is the newest.
+
+        The target repeats them, because this program confirms none.
+        """
+
+        def take() -> bool:
+            data = self.socket.recv(4096)
             flags, _, number = struct.unpack_from("<BII", data, 4)
             if flags == RUNNING:
                 for part in filter(None, data[21:].split(b"\0")):
-                    found[number] = (frames.decode(part) or b"").decode("ascii")[2:]
+                    self._lines[number] = (frames.decode(part) or b"").decode("ascii")[2:]
                     number += 1
-        return [found[number] for number in sorted(found)]
+            return bool(self._lines) and self._lines[max(self._lines)].startswith(last)
+
+        until(take, lambda: f"no line {last}: {self._lines}", pause=0.0)
+        return [self._lines[number] for number in sorted(self._lines)]
+
+
+def gaps(got: list[Rows], width: int) -> int:
+    """In how many places rows of ``width`` values are missing, also before the first one."""
+    numbers = [0, *(rows.number + len(rows.values) // width for rows in got)]
+    assert all(before <= rows.number for before, rows in zip(numbers, got)), "no row comes twice"
+    return sum(before < rows.number for before, rows in zip(numbers, got))
+
+
+def dropped(client: Client) -> int:
+    """How many datagrams to ``client`` Linux has dropped because a late computer did not let this process read them."""
+    own = client._port._socket.getsockname()[1]  # type: ignore[attr-defined]
+    sockets = [line.split() for line in Path("/proc/net/udp").read_text().splitlines()[1:]]
+    (found,) = [int(words[-1]) for words in sockets if int(words[1].rpartition(":")[2], 16) == own]
+    return found
 
 
 # A program
@@ -105,15 +126,13 @@ def test_a_target_by_udp_does_what_one_on_a_cable_does(target: UdpTarget) -> Non
         assert client.command("set Pan\\PID\\kp=2.2") == ["ok set"]
         assert "parameter Pan\\PID\\kp=2.2 generated=2.6" in client.command("get")
         assert client.command("capture position_pan outputs.pwm_pan rows=1000") == ["ok capture rows=1000"]
-        time.sleep(1.5)
+        let_pass(client, 1.5)
         recorded = client.command("capture read")
         assert len([line for line in recorded if line.startswith("csv ")]) == 1001
-        assert client.command("enable leased") == ["ok enable"]
-        time.sleep(1)
+        assert client.enable() == ["ok enable"]
+        let_pass(client, 1)
         assert "enabled=1 leased=1" in client.command("stats")[0]
-    end = time.monotonic() + 2
-    while "enabled=1" in client_status(target):
-        assert time.monotonic() < end
+    until(lambda: "enabled=0" in client_status(target))
     target.end()
 
 
@@ -131,24 +150,24 @@ def test_a_stream_of_20_signals_has_every_cycle(target: UdpTarget) -> None:
         for number in range(100):
             assert client.command(f"set Pan\\PID\\kp={number + 0.5}") == ["ok set"]
             assert f"parameter Pan\\PID\\kp={number + 0.5} generated=2.6" in client.command("get")
-            time.sleep(0.02)
+        until(lambda: sum(len(rows.values) // 20 for rows in got) > 2000)
         client.stop_stream()
         assert client.damaged == 0
-    assert sum(len(rows.values) // 20 for rows in got) > 2000
-    number = 0
-    for rows in got:
-        assert rows.number == number
-        number += len(rows.values) // 20
+        assert gaps(got, 20) <= dropped(client) or waited(target.process.pid) > KEPT
 
 
 def test_the_command_line_records_and_asks(target: UdpTarget, tmp_path: Path) -> None:
     done = live(target.port, "--duration", "1", "--signals", "position_pan", "--csv", tmp_path / "rows.csv")
     assert done.returncode == 0, done.stderr
     assert " 0 dropped, 0 damaged frames" in done.stdout
-    assert len((tmp_path / "rows.csv").read_text().splitlines()) > 800
+    with (tmp_path / "rows.csv").open() as file:
+        header, *rows = csv.reader(file)
+    numbers = [[float(cell) for cell in row] for row in rows]
+    assert numbers[-1][0] > 0.8
     assert live(target.port, "--send", "get Pan\\PID\\kp", "--signals", "none").stdout == (
         "parameter Pan\\PID\\kp=2.6\nok get\n"
     )
+    check_every_cycle_has_a_row(header, [(row[0], row) for row in numbers], target.end())
 
 
 def test_the_end_of_a_target_is_noticed(target: UdpTarget) -> None:
@@ -171,7 +190,7 @@ def test_a_second_program_is_told_who_has_the_target_and_may_disable_it(target: 
     with UdpPort(target.port) as port:
         client = Client(port, told.append)
         client.disable()
-        client.command("enable leased")
+        client.enable()
         own = "{}:{}".format(*port._socket.getsockname())
         with pytest.raises(PortTaken, match=f"another program has {target.port}: {own}"):
             UdpPort(target.port)
@@ -184,20 +203,20 @@ def test_a_second_program_is_told_who_has_the_target_and_may_disable_it(target: 
         begin = time.monotonic()
         disable(target.port)
         assert time.monotonic() - begin < 0.2
-        assert "enabled=0" in client.command("stats")[0]
-        assert "state enabled=0 fault=none" in told
+        assert is_soon_disabled(client)
+        assert [line for line in told if line.startswith("state enabled=0 fault=none ") and line.endswith(" by=other")]
 
-        client.command("enable leased")
+        client.enable()
         done = live(target.port, "--send", "disable")
         assert (done.returncode, done.stdout) == (0, "ok disable\n")
-        assert "enabled=0" in client.command("stats")[0]
+        assert is_soon_disabled(client)
 
-        client.command("enable leased")
+        client.enable()
         person = Person(target)
         assert person.ask("get", "error") == f"error line {own} has this target: only disable acts\r\n"
         assert "enabled=1" in client.command("stats")[0]
         assert person.ask("  disable now", "ok") == "ok disable\r\n"
-        assert "enabled=0" in client.command("stats")[0]
+        assert is_soon_disabled(client)
         client.stop()
 
 
@@ -206,7 +225,7 @@ def test_a_silent_program_leaves_the_target_to_another_one(target: UdpTarget) ->
     first.send(BEGIN)
     assert first.flags() == RUNNING
     begin = time.monotonic()
-    with client_of(target.port):
+    with UdpPort(target.port):
         assert 1.5 < time.monotonic() - begin < 3
         first.send(BEGIN)
         assert first.flags() == OVER, "a session does not begin again"
@@ -229,12 +248,13 @@ def test_a_person_types_lines(target: UdpTarget) -> None:
     text = person.ask("get Pan\\PID\\kp", "ok get")
     assert text.startswith("ready node=JIWY_node ")
     assert text.endswith("\r\nparameter Pan\\PID\\kp=2.6\r\nok get\r\n")
-    assert person.ask("disable", "ok").endswith("state enabled=0 fault=none\r\nok disable\r\n")
+    assert person.ask("disable", "ok").endswith("state enabled=0 fault=none by=line\r\nok disable\r\n")
     assert "port signal inputs.position_pan unit=rad" in person.ask("ports", "ok ports")
     person.ask("watch position_pan", "ok watch")
-    end = time.monotonic() + 2.5
-    while time.monotonic() < end:
-        assert person.socket.recv(4096).startswith(b"watch "), "nobody else wants the target"
+    shown = person.ask("", "watch ")
+    while float(shown.split()[1]) < 2.5:
+        shown = person.socket.recv(4096).decode("ascii")
+        assert shown.startswith("watch "), "nobody else wants the target"
     person.ask("watch off", "ok watch")
     other = Person(target)
     assert other.ask("get", "error") == f"error line {person.name} has this target: only disable acts\r\n"
@@ -252,20 +272,17 @@ def test_a_person_types_lines(target: UdpTarget) -> None:
 def test_a_command_acts_once_and_not_after_a_later_disable(target: UdpTarget) -> None:
     program = Program(target)
     program.send(BEGIN)
-    program.lines(0.1)
     program.send(DISABLE, 1, "disable", lowest=1)
-    assert program.lines(0.3)[-1] == "ok disable"
+    program.lines("ok disable")
     for _ in range(5):
         program.send(0, 2, "jog pwm_pan 0.1 50")
-    assert [line.split(" ")[0] for line in program.lines(0.5)][-3:] == ["moved", "moved", "ok"]
+    assert [line.split(" ")[0] for line in program.lines("ok jog")][-3:] == ["moved", "moved", "ok"]
     program.send(0, 4, "set Pan\\PID\\kp=1", lowest=1)
     program.send(0, 3, "set Pan\\PID\\kd=1", lowest=1)  # it was overtaken, and nothing forbids it
     program.send(DISABLE, 6, "disable", lowest=6)
     program.send(0, 5, "enable", lowest=1)  # it was overtaken by `disable`
     program.send(0, 4, "set Pan\\PID\\kp=1", lowest=1)
-    lines = program.lines(0.5)
-    assert "ok enable" not in lines
-    assert lines[-1] == "ok disable"
+    assert "ok enable" not in program.lines("ok disable")
     trace = target.end()
     starts = [
         now["plant.inputs.duty_pan"]
@@ -284,8 +301,7 @@ def test_garbage_does_nothing(target: UdpTarget, used: bool) -> None:
     got: list[Rows] = []
 
     def throw() -> None:
-        end = time.monotonic() + 3
-        while time.monotonic() < end:
+        for _ in range(3000):
             kind = chance.randrange(5)
             size = chance.choice((0, 1, 2, 20, 21, 22, 300, 1400, 2047, 2048, 9000, 65507))
             data = chance.randbytes(size)
@@ -308,7 +324,7 @@ def test_garbage_does_nothing(target: UdpTarget, used: bool) -> None:
             throw()
             assert "enabled=0" in client.command("stats")[0]
             client.stop_stream()
-        assert sum(len(rows.values) for rows in got) == got[-1].number + len(got[-1].values)
+            assert gaps(got, 1) <= dropped(client) or waited(target.process.pid) > KEPT
     else:
         throw()
         assert client_status(target).split()[1] == before.split()[1]
@@ -375,13 +391,17 @@ def test_wrong_names_of_a_port() -> None:
             UdpPort(Path(name))
 
 
-def test_a_target_on_an_address_of_the_network_warns(jiwy_host: Path, tmp_path: Path) -> None:
-    target = UdpTarget(jiwy_host, tmp_path, "0.0.0.0:0")
+@pytest.mark.parametrize(
+    ("address", "who"),
+    [
+        ("0.0.0.0:0", "anyone who can send datagrams to this address"),
+        ("127.0.0.1:0", "every program of this computer"),
+    ],
+)
+def test_an_open_console_warns(jiwy_host: Path, tmp_path: Path, address: str, who: str) -> None:
+    target = UdpTarget(jiwy_host, tmp_path, address, options=("--console-open",))
     assert target.process.stderr is not None
-    assert target.process.stderr.readline() == (
-        "jiwy: warning: anyone who can send datagrams to this address can move the robot\n"
-    )
+    assert target.process.stderr.readline() == f"jiwy: warning: {who} can move the robot\n"
     with client_of(Path(f"udp:{target.number}")) as client:
         assert client.description.name == "jiwy"
-    os.kill(target.process.pid, 15)
-    target.process.communicate()
+    target.end()

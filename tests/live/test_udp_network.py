@@ -15,13 +15,15 @@ from pathlib import Path
 
 import pytest
 
-from epg.live.client import Lost, Refused, Rows
+from epg.live.client import CommandRefused, Lost, Rows
 from epg.live.port import PortError
 from epg.live.rows import Stream
+from tests.waiting import until
 
 from .relay import LATE
-from .test_live import ROOT, start
-from .udp_target import Trace, UdpTarget, client_of
+from .target import begin_of, client_of, let_pass, tick_of
+from .test_live import ROOT, start, stopped
+from .udp_target import Trace, UdpTarget
 
 LEASE = 0.3
 PERIOD = 0.001
@@ -72,7 +74,7 @@ def test_answers_are_complete_and_commands_act(target: UdpTarget, bad: Path) -> 
             assert client.command(f"set Pan\\PID\\kp={number + 0.5}") == ["ok set"]
             assert client.parameters()[[p.name for p in whole.parameters].index("Pan\\PID\\kp")].value == number + 0.5
         assert client.command("capture position_pan setpoint_pan rows=500") == ["ok capture rows=500"]
-        time.sleep(0.7)
+        let_pass(client, 0.7)
         recorded = [line for line in client.command("capture read") if line.startswith("csv ")]
         times = [float(line.removeprefix("csv ").split(",")[0]) for line in recorded[1:]]
         assert len(times) == 500 and times == sorted(times)
@@ -85,7 +87,7 @@ def test_gaps_of_rows_are_counted(target: UdpTarget, bad: Path) -> None:
     with client_of(bad) as client:
         count = len(client.description.streamed)
         client.start_stream(range(count), 1, got.append)
-        time.sleep(2)
+        until(lambda: got and got[-1].number > 2000)
         client.stop_stream()
     stream = Stream([str(number) for number in range(count)], PERIOD)
     rows = [row for each in got for row in stream.take(each)]
@@ -99,12 +101,12 @@ def test_gaps_of_rows_are_counted(target: UdpTarget, bad: Path) -> None:
 def test_a_jog_is_never_repeated(target: UdpTarget, bad: Path) -> None:
     with client_of(bad) as client:
         client.disable()
-        time.sleep(0.5)
+        let_pass(client, 0.5)
         for _ in range(5):
             assert client.command("jog pwm_pan 0.1 50")[-1] == "ok jog"
-        time.sleep(LATE + 0.2)
+        let_pass(client, LATE + 0.2)
         assert client.command("jog pwm_pan 0.1 50")[-1] == "ok jog"
-        time.sleep(LATE + 0.2)
+        let_pass(client, LATE + 0.2)
     trace = target.end()
     disabled = next(index for index, row in enumerate(trace) if not row["enabled"])
     assert pulses(trace[disabled + 1 :], DUTY) == [50] * 6
@@ -113,27 +115,28 @@ def test_a_jog_is_never_repeated(target: UdpTarget, bad: Path) -> None:
 def test_a_movement_by_hand_ends_with_the_last_command(target: UdpTarget, bad: Path) -> None:
     with client_of(bad) as client:
         client.disable()
-        for _ in range(10):
+        for _ in range(20):
             client.move("pwm_pan", 0.1)
-            time.sleep(0.1)
+            time.sleep(0.05)
         released = time.monotonic()
-        time.sleep(LATE + 0.3)
-        ended = time.monotonic()
+        let_pass(client, LATE + 0.3)
+    tick = tick_of(target.port)
     trace = target.end()
     disabled = next(index for index, row in enumerate(trace) if not row["enabled"])
-    moving = [row["time"] for row in trace[disabled + 1 :] if row[DUTY] != 0]
-    assert moving[0] < moving[-1] < trace[-1]["time"] - (ended - released) + 0.4
+    again = next(index for index, row in enumerate(trace) if index > disabled and row["enabled"])
+    moving = [row["time"] for row in trace[disabled + 1 : again] if row[DUTY] != 0]
+    assert moving[0] < moving[-1] <= released + LEASE + PERIOD - begin_of(trace, tick)
 
 
 def test_disable_always_acts_and_nothing_enables_afterwards(target: UdpTarget, bad: Path) -> None:
     with client_of(bad) as client:
         client.disable()
         for _ in range(10):
-            with contextlib.suppress(Refused):  # a target that the loss of numbers has disabled meanwhile
-                client.command("enable leased")
+            with contextlib.suppress(CommandRefused):  # a target that the loss of numbers has disabled meanwhile
+                client.enable()
             client.disable()
             assert "enabled=0" in client.command("stats")[0]
-        time.sleep(LATE + 0.2)
+        let_pass(client, LATE + 0.2)
         assert "enabled=0" in client.command("stats")[0], "an old 'enable' has arrived meanwhile"
     target.end()
 
@@ -141,8 +144,8 @@ def test_disable_always_acts_and_nothing_enables_afterwards(target: UdpTarget, b
 def test_a_lease_holds_or_ends_safely(target: UdpTarget, bad: Path) -> None:
     with client_of(bad) as client:
         client.disable()
-        assert client.command("enable leased") == ["ok enable"]
-        time.sleep(4)
+        assert client.enable() == ["ok enable"]
+        let_pass(client, 4)
         state = client.command("stats")[0]
         assert "enabled=1 leased=1 fault=none" in state or "enabled=0 fault=operator" in state, state
     trace = target.end()
@@ -162,7 +165,7 @@ def test_a_network_that_loses_everything_is_noticed(target: UdpTarget) -> None:
         with client_of(Path(port)) as client:
             client._told = told.append
             client.disable()
-            client.command("enable leased")
+            client.enable()
             relay.send_signal(signal.SIGSTOP)
             with pytest.raises(Lost):
                 client.command("set Pan\\PID\\kp=1")
@@ -184,42 +187,25 @@ def test_a_client_that_fails_leaves_the_target_disabled_in_time(target: UdpTarge
     while '"inputs.setpoint_pan": 0.125' not in program.stdout.readline():
         pass
     time.sleep(0.5)
-    killed = time.monotonic()
-    program.send_signal(how)
-    time.sleep(1)
-    seen = tick_of(target, 0.25)
+    begin = time.monotonic()
+    killed = stopped(program, how)
+    until(lambda: is_free(target.port))
+    tick = tick_of(target.port)
     program.kill()
     program.communicate()
     trace = target.end()
-    begin = seen - next(
-        row["time"] for row in trace if row["inputs.setpoint_pan"] == 0.25
-    )  # of the trace, by the clock
     moving = dropwhile(lambda row: row["inputs.setpoint_pan"] != 0.125, trace)
     *_, last = takewhile(lambda row: row["enabled"], moving)
-    assert killed - 0.05 < begin + last["time"] <= killed + LEASE + PERIOD
-    safe = trace[trace.index(last) + 1 : trace.index(last) + 500]
+    assert begin < begin_of(trace, tick) + last["time"] <= killed + LEASE + PERIOD
+    safe = list(takewhile(lambda row: not row["enabled"], trace[trace.index(last) + 1 :]))
     assert all(row["enabled"] == 0 and row["fault"] == OPERATOR and row[DUTY] == 0 for row in safe)
 
 
-def tick_of(target: UdpTarget, setpoint: float) -> float:
-    """The monotonic time of the first cycle with this setpoint, which another client sends."""
-    end = time.monotonic() + 5
-    while time.monotonic() < end:
-        with contextlib.suppress(PortError):
-            got: list[Rows] = []
-            with client_of(target.port) as client:
-                names = [signal.name for signal in client.description.signals]
-                client.command("enable leased")
-                client.start_stream([names.index("inputs.setpoint_pan")], 1, got.append)
-                client.command(f"pan_subscriber={setpoint}")
-                time.sleep(0.2)
-                client.stop_stream()
-                client.disable()
-            for rows in got:
-                for index, value in enumerate(rows.values):
-                    if value == setpoint:
-                        return rows.tick + index * PERIOD
-    raise AssertionError("no row has the setpoint")
+def is_free(port: Path) -> bool:
+    """True if no other program has the target."""
+    with contextlib.suppress(PortError), client_of(port):
+        return True
+    return False
 
 
 # Two computers
@@ -255,13 +241,34 @@ def computers() -> Iterator[tuple[str, str]]:
 
 @pytest.mark.parametrize(("address", "nobody"), [("10.77.0.1", "10.77.0.9"), ("[fd77::1]", "[fd77::9]")])
 def test_a_robot_is_reached_from_another_computer(
-    jiwy_host: Path, tmp_path: Path, computers: tuple[str, str], address: str, nobody: str
+    jiwy_host: Path,
+    tmp_path: Path,
+    computers: tuple[str, str],
+    address: str,
+    nobody: str,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
     robot, desk = computers
     target = UdpTarget(jiwy_host, tmp_path, f"{address}:7000", namespace=("ip", "netns", "exec", robot))
     try:
         assert target.said == f"jiwy: the console listens on udp:{address}:7000\n"
-        command = ["ip", "netns", "exec", desk, sys.executable, "-m", "epg", "live", str(target.port)]
+        assert target.process.stderr is not None
+        key = tmp_path / "key"
+        key.write_text(target.process.stderr.readline().rpartition(": ")[2])
+        command = [
+            "ip",
+            "netns",
+            "exec",
+            desk,
+            sys.executable,
+            "-m",
+            "epg",
+            "live",
+            "--key",
+            str(key),
+            str(target.port),
+        ]
         arguments = ("--send", "disable", "--send", "enable", "--duration", "1", "--signals", "position_pan")
         done = subprocess.run([*command, *arguments], cwd=ROOT, capture_output=True, text=True, timeout=60, check=False)
         assert done.returncode == 0, done.stderr

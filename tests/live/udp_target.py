@@ -3,15 +3,13 @@
 
 from __future__ import annotations
 
-import csv
 import signal
 import subprocess
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 from epg.live.client import Client
-from epg.live.udp import UdpPort
+from tests.live.target import last_enabled, read_trace, tick_of
+from tests.waiting import soon
 
 Trace = list[dict[str, float]]
 
@@ -19,11 +17,19 @@ Trace = list[dict[str, float]]
 class UdpTarget:
     """The program.  ``port`` is the name of its port."""
 
-    def __init__(self, program: Path, folder: Path, address: str = "0", namespace: tuple[str, ...] = ()) -> None:
+    def __init__(
+        self,
+        program: Path,
+        folder: Path,
+        address: str = "0",
+        namespace: tuple[str, ...] = (),
+        options: tuple[str, ...] = (),
+        duration: int = 60,
+    ) -> None:
         self._trace = folder / "trace.csv"
-        options = ("--realtime", "--console-udp", address, "--duration", "60", "--trace", str(self._trace))
+        always = ("--realtime", "--console-udp", address, "--duration", str(duration), "--trace", str(self._trace))
         self.process = subprocess.Popen(
-            [*namespace, str(program), *options],
+            [*namespace, str(program), *always, *options],
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
@@ -38,22 +44,20 @@ class UdpTarget:
         """Its UDP port."""
         return int(str(self.port).rpartition(":")[2])
 
+    def last_enabled(self) -> float:
+        """As :meth:`tests.live.target.Target.last_enabled`; ends the program."""
+        tick = tick_of(self.port)
+        return last_enabled(self.end(), tick)
+
     def end(self) -> Trace:
         """Ends the program, which must have found no error of memory; returns its trace."""
         self.process.send_signal(signal.SIGTERM)
         _, said = self.process.communicate(timeout=20)
         assert self.process.returncode == 130, said
-        assert not said.replace("warning: anyone", ""), said
-        with self._trace.open() as file:
-            return [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
+        assert not said, said
+        return read_trace(self._trace)
 
 
-@contextmanager
-def client_of(port: Path) -> Iterator[Client]:
-    """A client of a target."""
-    with UdpPort(port) as opened:
-        client = Client(opened)
-        try:
-            yield client
-        finally:
-            client.stop()
+def is_soon_disabled(client: Client) -> bool:
+    """True if the target becomes disabled.  The answer to a stop comes before the next control cycle."""
+    return soon(lambda: "enabled=0" in client.command("stats")[0], 2)

@@ -7,15 +7,13 @@
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
-import sys
-import time
 from pathlib import Path
 from types import TracebackType
 from typing import NamedTuple
 
-import pytest
+from tests.cmake.built import built
+from tests.waiting import PATIENCE, until
 
 PROJECT = Path(__file__).resolve().parent / "robot"
 SIGNALS = 20
@@ -34,35 +32,30 @@ class Span(NamedTuple):
     """The time at which the next cycle has made it safe."""
 
 
-def build_robot(build: Path) -> Path:
-    """The host program, built in the folder ``build``."""
-    for tool, package in (("cmake", "cmake"), ("ninja", "ninja-build")):
-        if not shutil.which(tool):
-            pytest.skip(f"{tool} is missing: apt install {package}")
-    options = [f"-DPython3_EXECUTABLE={sys.executable}", "-DCMAKE_BUILD_TYPE=Release"]
-    for command in (
-        ["cmake", "-S", str(PROJECT), "-B", str(build), "-G", "Ninja", *options],
-        ["cmake", "--build", str(build), "--target", "robot_host"],
-    ):
-        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
-        assert done.returncode == 0, done.stdout + done.stderr
-    return build / "robot_host"
+def build_robot(build: Path, project: Path = PROJECT) -> Path:
+    """The host program of a project, built in the folder ``build``."""
+    return built(project, build, "-DCMAKE_BUILD_TYPE=Release", targets=["robot_host"]) / "robot_host"
 
 
 class Robot:
-    """The running program.  ``port`` is the terminal that is its serial port."""
+    """The running program.  ``port`` is the terminal that is its serial port, with ``udp`` the name of its UDP port."""
 
-    def __init__(self, program: Path, folder: Path) -> None:
+    def __init__(self, program: Path, folder: Path, *, udp: bool = False) -> None:
         self.port, self._file = folder / "port", folder / "witness"
         self._file.write_text("")
+        console = ("--console-udp", "0") if udp else ("--console-pty", str(self.port))
         self.process = subprocess.Popen(
-            [str(program), "--realtime", "--console-pty", str(self.port)],
+            [str(program), "--realtime", *console],
             stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE if udp else None,
             env={**os.environ, "WITNESS_FILE": str(self._file)},
+            text=True,
         )
-        end = time.monotonic() + 10
-        while not self.port.exists() and time.monotonic() < end:
-            time.sleep(0.01)
+        if udp:
+            assert self.process.stderr is not None
+            self.port = Path(self.process.stderr.readline().split()[-1])
+            return
+        until(self.port.exists, "the target has no port")
 
     def spans(self) -> list[Span]:
         """The times in which the actuator was driven."""
@@ -80,16 +73,13 @@ class Robot:
         spans = self.spans()
         return bool(spans) and spans[-1].safe == float("inf")
 
-    def wait(self, driven: bool, seconds: float = 5.0) -> None:
+    def wait(self, driven: bool, seconds: float = PATIENCE) -> None:
         """Waits until the actuator is driven, or is safe."""
-        end = time.monotonic() + seconds
-        while self.is_driven() != driven:
-            assert time.monotonic() < end, f"driven={not driven}, not {driven}"
-            time.sleep(0.002)
+        until(lambda: self.is_driven() == driven, f"driven={not driven}, not {driven}", seconds, pause=0.002)
 
     def close(self) -> None:
         self.process.kill()
-        self.process.wait()
+        self.process.communicate()
 
     def __enter__(self) -> Robot:
         return self

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from epg.diagnostics import Diagnostics
-from epg.messages.definition import FieldType, Message, parse_message
-from epg.messages.library import Library, complete_definition
-from epg.messages.type_hash import type_hash
-from epg.source import Span
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.messages.definition import FieldType, Message, parse_message
+from epg.generator.messages.library import Library, complete_definition
+from epg.generator.messages.type_hash import type_hash
+from epg.generator.source import Span
 from tests.ros2 import definitions
 
 
@@ -72,6 +72,8 @@ def test_mistakes_have_positions() -> None:
     assert mistakes("float64 Bad") == [(1, 9, 12, "'Bad' cannot be the name of a field")]
     assert mistakes("float64 a__b") == [(1, 9, 13, "'a__b' cannot be the name of a field")]
     assert mistakes("uint8 bad=3") == [(1, 7, 10, "'bad' cannot be the name of a constant")]
+    assert mistakes("bool BAD=2") == [(1, 9, 11, "'2' is not a value of a bool: true or false")]
+    assert parse("bool GOOD=true\nbool FINE = 0").constants == {"GOOD": "true", "FINE": "0"}
     assert mistakes("uint8 a\nuint8 a") == [(2, 7, 8, "the message already has a field 'a'")]
     assert mistakes("float64<=3 a") == [(1, 1, 11, "only strings can have a bound: string<=20")]
     assert mistakes("float64[0] a") == [(1, 1, 11, "a length must be from 1 to 1048576")]
@@ -123,6 +125,14 @@ def test_hashes_are_those_of_the_runtime_and_of_ros2() -> None:
     # as `ros2 topic info --verbose` of Jazzy shows it
     imu = "RIHS01_7d9a00ff131080897a5ec7e26e315954b8eae3353c3f995c55faf71574000b5b"
     assert type_hash(loaded("sensor_msgs/msg/Imu"), "sensor_msgs/msg/Imu") == imu
+
+
+def test_the_hash_of_a_signed_byte(tmp_path: Path) -> None:
+    folder = tmp_path / "std_msgs" / "msg"
+    folder.mkdir(parents=True)
+    (folder / "Int8.msg").write_text("int8 data\n", encoding="ascii")
+    int8 = "RIHS01_26525065a403d972cb672f0777e333f0c799ad444ae5fcd79e43d1e73bd0f440"  # Jazzy's
+    assert type_hash(loaded("std_msgs/msg/Int8", folders=(tmp_path,)), "std_msgs/msg/Int8") == int8
 
 
 def test_hashes_of_all_messages_where_ros2_is_sourced() -> None:

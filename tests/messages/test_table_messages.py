@@ -15,14 +15,14 @@ from typing import Any
 
 import pytest
 
-from epg.diagnostics import Diagnostics
-from epg.messages.constants import Constant
-from epg.messages.layout import MessageType, message_type
-from epg.messages.library import Library, complete_definition
-from epg.source import Span
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.messages.byte_layout import MessageType, message_type
+from epg.generator.messages.constants import Constant
+from epg.generator.messages.library import Library, complete_definition
+from epg.generator.source import Span
 
 rosbags = pytest.importorskip(
-    "rosbags.typesys", reason="rosbags is not installed: pip install -r epg/lock/test_all.txt"
+    "rosbags.typesys", reason="rosbags is not installed: pip install -r epg/generator/lock/test_all.txt"
 )
 
 RUNTIME = Path(__file__).resolve().parents[2] / "targets/runtime"
@@ -92,7 +92,7 @@ class Step(ctypes.Structure):
 
 class Table(ctypes.Structure):
     _fields_ = [
-        ("message", ctypes.c_void_p * 4),
+        ("message", ctypes.c_void_p * 5),
         ("data", ctypes.c_void_p),
         ("size", ctypes.c_size_t),
         ("places", ctypes.POINTER(Place)),
@@ -111,7 +111,7 @@ def runtime(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     """The runtime's functions, compiled for this computer."""
     compiler = shutil.which("cc")
     if compiler is None:
-        pytest.skip("a C compiler is missing: apt install gcc")
+        pytest.skip("gcc is not installed: sudo apt install gcc")
     library = tmp_path_factory.mktemp("runtime") / "messages.so"
     sources = [str(RUNTIME / "src" / "communication" / name) for name in ("message_table.c", "cdr.c")]
     flags = ["-std=c11", "-O1", "-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Werror", "-fPIC", "-shared"]

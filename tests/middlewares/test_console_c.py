@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The console's protocol: each ``TEST(name)`` of ``c/console_tests.c`` and ``c/live_tests.c``, with sanitizers."""
+"""The console's protocol: each ``TEST(name)`` of ``c/*_tests.c``, with sanitizers."""
 
 from __future__ import annotations
 
 import importlib.util
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -15,7 +14,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 CONSOLE = ROOT / "targets" / "middlewares" / "console"
 HERE = Path(__file__).resolve().parent / "c"
-TESTS = {name: HERE / f"{name}.c" for name in ("console_tests", "live_tests")}
+TESTS = {path.stem: path for path in sorted(HERE.glob("*_tests.c"))}
 
 
 def _runtime_tests() -> ModuleType:
@@ -38,8 +37,10 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     folder = tmp_path_factory.mktemp("console")
     fakes = [program.SOURCES / "fake_port.c", program.SOURCES / "fake_application.c"]
     sources = [HERE / "console_bench.c", *fakes, *sorted(CONSOLE.glob("*.c")), *program.runtime_sources()]
+    includes = [CONSOLE, HERE]
+    shared = program.compile_objects(folder / "shared", sources, includes=includes)
     return {
-        name: program.compile_program(folder / name, [tests, *sources], includes=[CONSOLE, HERE])
+        name: program.compile_program(folder / name, [tests, *shared], includes=includes)
         for name, tests in TESTS.items()
     }
 
@@ -63,7 +64,7 @@ def test_it_needs_no_heap_and_no_printf(tmp_path: Path) -> None:
         for line in subprocess.run(["nm", str(output)], capture_output=True, text=True, check=True).stdout.splitlines():
             letter, name = line.split()[-2:]
             (undefined if letter == "U" else defined).add(name)
-    port = {f"epg_port_{name}" for name in ("time_ns", "wait_until", "serial", "store_read", "store_write")}
+    port = {f"epg_port_{name}" for name in ("time_ns", "wait_until", "serial", "boot_id", "store_read", "store_write")}
     text = {
         "memcpy",
         "memmove",
@@ -79,23 +80,3 @@ def test_it_needs_no_heap_and_no_printf(tmp_path: Path) -> None:
         "strspn",
     }
     assert undefined - defined <= {*port, *text, "strstr", "_GLOBAL_OFFSET_TABLE_"}
-
-
-@pytest.mark.skipif(shutil.which("cppcheck") is None, reason="cppcheck is not installed: apt install cppcheck")
-def test_cppcheck_finds_nothing() -> None:
-    command = ["cppcheck", "--std=c11", "--language=c", "--enable=warning,style,performance,portability"]
-    command += ["--inline-suppr", "--error-exitcode=1", "--quiet", "--suppress=missingIncludeSystem"]
-    command += [f"-I{program.RUNTIME / 'include'}", *map(str, sorted(CONSOLE.glob("*.c")))]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
-
-
-@pytest.mark.skipif(shutil.which("clang-format") is None, reason="clang-format is missing: apt install clang-format-14")
-def test_files_are_formatted() -> None:
-    shown = subprocess.run(["clang-format", "--version"], capture_output=True, text=True, check=True).stdout
-    if " version 14" not in f" {shown}":
-        pytest.skip("clang-format 14 is not installed: apt install clang-format-14")
-    files = [*sorted(CONSOLE.glob("*.[ch]")), *sorted(HERE.glob("*.[ch]"))]
-    command = ["clang-format", f"--style=file:{ROOT / '.clang-format'}", "--dry-run", "--Werror", *map(str, files)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr

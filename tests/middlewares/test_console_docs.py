@@ -11,11 +11,14 @@ from __future__ import annotations
 
 import re
 import time
+from functools import partial
 from pathlib import Path
 
 import pytest
 
-from .client import PATIENCE, Host
+from tests.waiting import until
+
+from .client import Host
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "console.md").read_text(encoding="utf-8")
@@ -28,6 +31,14 @@ def pattern(line: str) -> str:
     return ".*".join(re.escape(part) for part in line.split("..."))
 
 
+def comes(console: Host, line: str, among_others: bool) -> bool:
+    """True if the next line is this one."""
+    got = console.until("")[0]
+    found = re.fullmatch(pattern(line), got) is not None
+    assert found or among_others or got.startswith(("watch ", "state ", "csv ")), f"{line} is expected, not {got}"
+    return found
+
+
 def hold(console: Host, session: str) -> None:
     """Sends the input of a session and finds its output; notices about other events may appear in between."""
     for exchange in re.split(r"^> ", session, flags=re.MULTILINE)[1:]:
@@ -35,12 +46,8 @@ def hold(console: Host, session: str) -> None:
         time.sleep(0.5)  # as a user does, and until the axes have stopped
         console.send(command + "\n")
         for line in lines:
-            if line == "...":
-                continue
-            end = time.monotonic() + PATIENCE
-            while not re.fullmatch(pattern(line), got := console.until("")[0]):
-                assert time.monotonic() < end, f"> {command}\n{line} does not come"
-                assert got.startswith(("watch ", "state ", "csv ")) or "..." in lines, f"> {command}\n{got}"
+            if line != "...":
+                until(partial(comes, console, line, "..." in lines), f"> {command}\n{line} does not come", pause=0.0)
 
 
 @pytest.mark.parametrize("number", range(len(SESSIONS)))
@@ -71,7 +78,7 @@ def test_all_commands_are_there() -> None:
     assert len(handlers) > 10
     table = PAGE[PAGE.index("| command |") : PAGE.index("A `<setpoint>`")]
     helped = (CONSOLE / "lists.c").read_text()
-    helped = helped[helped.index("help[]") : helped.index("};")]
+    helped = helped[helped.index("help[]") :].partition("};")[0]
     for name in handlers:
         assert re.search(rf"`{name}\b", table), name
         assert re.search(rf"\b{name}\b", helped) or name == "help", name

@@ -3,17 +3,23 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import itertools
 import os
 import random
 import re
 import signal
+import stat as stat_module
+import struct
 import subprocess
 import time
+import zlib
 from pathlib import Path
 
 import pytest
+
+from tests.waiting import until
 
 from .client import Host, Lines, stat, values
 
@@ -25,12 +31,8 @@ def test_setpoints_reach_the_model(jiwy_host: Path) -> None:
     with Host(jiwy_host) as console:
         assert console.ask("pan_subscriber=0.1 tilt_subscriber=-2.5e-3") == ["ok setpoint"]
         assert console.ask("watch setpoint_pan setpoint_tilt") == ["ok watch"]
-        console.lines.clear()
-        time.sleep(0.1)
-        console.receive(1)
-        assert values(console.until("watch ")[-1]).keys() == {"inputs.setpoint_pan", "inputs.setpoint_tilt"}
-        last = [values(line) for line in console.lines if line.startswith("watch ")][-1]
-        assert last == {"inputs.setpoint_pan": 0.1, "inputs.setpoint_tilt": -0.0025}
+        sent = {"inputs.setpoint_pan": 0.1, "inputs.setpoint_tilt": -0.0025}
+        until(lambda: values(console.until("watch ")[-1]) == sent)
         assert console.close() == (0, "")
 
 
@@ -39,7 +41,7 @@ def test_values_of_a_watch_line_are_of_one_cycle(jiwy_host: Path) -> None:
         console.ask("watch setpoint_pan setpoint_tilt")
         lines: list[str] = []
         for number in range(500):
-            value = number / 7 + 1
+            value = number / 700 + 0.5
             console.send(f"pan_subscriber={value!r} tilt_subscriber={value!r}\n")
             lines += console.receive(0.002)
         seen = {tuple(values(line).values()) for line in lines if line.startswith("watch ")}
@@ -58,7 +60,7 @@ def test_parameters_are_set_saved_and_back_after_a_restart(jiwy_host: Path, tmp_
         assert console.ask("save")[-1].startswith("error save")
         assert console.ask("disable")[-1] == "ok disable"
         assert console.ask("save") == ["ok save values=2"]
-        assert "stored=nothing" in console.ask("version")[-1]
+        assert "stored=saved" in console.ask("version")[-1]
         assert console.close() == (0, "")
     with Host(jiwy_host, "--store", str(store)) as console:
         assert console.ask("get Pan\\PID\\kp") == ["parameter Pan\\PID\\kp=0.1 generated=2.6", "ok get"]
@@ -71,7 +73,89 @@ def test_parameters_are_set_saved_and_back_after_a_restart(jiwy_host: Path, tmp_
         assert "stored=of_another_model" in console.ask("version")[-1]
     with Host(jiwy_host) as console:
         console.ask("disable")
-        assert console.ask("save") == ["error save this target cannot store parameters"]
+        assert console.ask("save") == ["error save this program was started without --store FILE"]
+
+
+def with_value(value: float, store: Path) -> bytes:
+    """The bytes of ``store`` with another value of the one parameter in it, as if its limits had been wider."""
+    data = bytearray(store.read_bytes())
+    data[-12:-4] = struct.pack("<d", value)
+    data[-4:] = struct.pack("<I", zlib.crc32(data[:-4]))
+    return bytes(data)
+
+
+def save(program: Path, store: str | Path) -> str:
+    """The answer to ``save`` of a parameter that has changed."""
+    with Host(program, "--store", str(store)) as console:
+        console.ask("set Pan\\PID\\kp=0.1")
+        console.ask("disable")
+        return console.ask("save")[-1]
+
+
+def test_a_store_that_cannot_be_written_says_why(jiwy_host: Path, tmp_path: Path) -> None:
+    cannot = "error save the file of --store cannot be written: "
+    assert save(jiwy_host, tmp_path / "none" / "store") == f"{cannot}No such file or directory"
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    assert save(jiwy_host, folder) == "error save the path of --store is not a file, but a folder or a device"
+    device = tmp_path / "null"
+    if os.geteuid() == 0:
+        os.mknod(device, stat_module.S_IFCHR | 0o666, os.makedev(1, 3))
+        assert save(jiwy_host, device) == "error save the path of --store is not a file, but a folder or a device"
+        assert stat_module.S_ISCHR(device.stat().st_mode)
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="needs root, to mount a small file system")
+def test_a_full_disk_keeps_the_old_store(jiwy_host: Path, tmp_path: Path) -> None:
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=8k", "tmpfs", str(disk)], check=False).returncode != 0:
+        pytest.skip("a file system cannot be mounted here")
+    try:
+        (disk / "store").write_bytes(b"old")
+        with contextlib.suppress(OSError), (disk / "filler").open("wb", buffering=0) as filler:
+            while True:
+                filler.write(bytes(1024))
+        answer = save(jiwy_host, disk / "store")
+        assert answer == "error save the file of --store cannot be written: No space left on device"
+        assert (disk / "store").read_bytes() == b"old" and not (disk / "store.new").exists()
+    finally:
+        subprocess.run(["umount", str(disk)], check=True)
+
+
+def test_a_link_to_the_store_stays_a_link(jiwy_host: Path, tmp_path: Path) -> None:
+    real, link = tmp_path / "real", tmp_path / "link"
+    real.touch(mode=0o640)
+    link.symlink_to(real)
+    assert save(jiwy_host, link) == "ok save values=1"
+    assert link.is_symlink() and real.stat().st_size > 0 and stat_module.S_IMODE(real.stat().st_mode) == 0o640
+    link.unlink()
+    link.symlink_to(tmp_path / "gone")
+    assert save(jiwy_host, link).endswith("No such file or directory")
+
+
+def test_the_state_of_the_store_is_told_at_the_start_and_by_version(jiwy_host: Path, tmp_path: Path) -> None:
+    store = tmp_path / "store"
+    assert save(jiwy_host, store) == "ok save values=1"
+    whole = store.read_bytes()
+    replaced = "all have their generated values, and 'save' replaces the file"
+    data = with_value(float("inf"), store)
+    for bytes_, words, told in (
+        (whole[:-5], "stored=damaged", f"{store}: warning: the stored parameters are damaged: {replaced}\n"),
+        (b"", "stored=nothing", f"{store}: warning: there are no stored parameters in this file: {replaced}\n"),
+        (
+            data,
+            "stored=partly",
+            f"{store}: warning: the stored value of Pan\\PID\\kp is outside of its limits: "
+            "it has its generated value\n",
+        ),
+    ):
+        store.write_bytes(bytes_)
+        with Host(jiwy_host, "--store", str(store)) as console:
+            answer = console.ask("version")
+            assert words in answer[-1]
+            assert answer[:-1] == (["refused Pan\\PID\\kp"] if words == "stored=partly" else [])
+            assert console.close() == (0, told)
 
 
 def test_a_parameter_takes_effect(jiwy_host: Path) -> None:
@@ -200,9 +284,7 @@ def test_the_loop_keeps_its_cycles_under_a_flood(jiwy_host: Path) -> None:
 def terminal(jiwy_host: Path, tmp_path: Path) -> Path:
     path = tmp_path / "jiwy"
     process = subprocess.Popen([str(jiwy_host), "--realtime", "--quiet", "--console-pty", str(path)])
-    end = time.monotonic() + 20
-    while not path.exists() and time.monotonic() < end:
-        time.sleep(0.01)
+    until(path.exists, "the program has no port")
     yield path  # type: ignore[misc]
     process.send_signal(signal.SIGINT)
     assert process.wait(20) == 130
@@ -220,6 +302,41 @@ def test_a_terminal_of_its_own(terminal: Path) -> None:
         console.send("watch\n")
         os.close(file)
         time.sleep(0.05)
+
+
+def test_a_line_acts_although_the_terminal_is_closed_at_once(terminal: Path) -> None:
+    """As by `echo disable > jiwy`; also in two pieces."""
+    for pieces in [["disable\n"]] * 20 + [["disa", "ble\n"]]:
+        file = os.open(terminal, os.O_RDWR | os.O_NOCTTY)
+        console = Lines(file, file)
+        console.until("ready ")
+        assert console.ask("enable") == ["ok enable"]
+        os.close(file)
+        for piece in pieces:
+            time.sleep(0.02)
+            file = os.open(terminal, os.O_RDWR | os.O_NOCTTY)
+            os.write(file, piece.encode())
+            os.close(file)
+        file = os.open(terminal, os.O_RDWR | os.O_NOCTTY)
+        console = Lines(file, file)
+        console.until("ready ")
+        until(lambda console=console: "stat enabled=0" in console.ask("stats")[0])
+        os.close(file)
+        time.sleep(0.02)
+
+
+def test_a_line_acts_although_nobody_reads_the_answers(jiwy_host: Path, tmp_path: Path) -> None:
+    trace = tmp_path / "trace.csv"
+    with Host(jiwy_host, "--duration", "1.5", "--trace", str(trace)) as console:
+        assert console.process.stdout is not None
+        console.process.stdout.close()
+        console.send("version\nversion\n")  # from here on the program knows
+        time.sleep(0.2)
+        console.send("disable\n")
+        assert console.process.wait(20) == 0
+    with trace.open(encoding="utf-8", newline="") as file:
+        enabled = [row["enabled"] for row in csv.DictReader(file)]
+    assert (enabled[0], enabled[-1]) == ("1", "0")
 
 
 def test_an_old_link_is_replaced_and_a_file_is_not(jiwy_host: Path, tmp_path: Path) -> None:

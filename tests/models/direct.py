@@ -7,7 +7,7 @@ import re
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
-from epg.emit.model.fmi_headers import fmi_headers
+from epg.generator.importers.fmu.fmi_headers import fmi_headers
 from tests.models.harness import SIGNAL, compile_file, link, run
 
 

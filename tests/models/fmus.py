@@ -11,7 +11,7 @@ import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from epg.emit.model.fmi_headers import fmi_headers
+from epg.generator.importers.fmu.fmi_headers import fmi_headers
 from tests.models.harness import MODELS, SIGNAL, compile_file, link, run
 
 FMU2 = MODELS / "fmu2"
@@ -51,9 +51,8 @@ int main(void)
     {show}
     for (int k = 0; k < {steps}; k++) {{
         double t = k * STEP;
-        double h = (k + 1) * STEP - t;
+        double h = STEP;
         {take}
-        if (h <= 0.0) {{ return 2; }}
         {step}
         {show}
     }}
@@ -67,10 +66,11 @@ int main(void)
 def run_fmu2(work: Path, steps: int) -> str:
     """The outputs of ``fmu2`` with the inputs of ``wrapper_driver``: its ports in the order of its description."""
     set_all = """
-    reals[0] = signal(); reals[1] = signal(); enable = signal() > 0.5;
-    { double m = signal(); mode = m < -2147483648.0 ? -2147483647 - 1 : (int)m; }"""
+    reals[0] = signal(); reals[1] = signal(); enable = signal() != 0.0;
+    mode = (int)round(signal());"""
     text = f"""#define FMI2_FUNCTION_PREFIX Servo_
 #include "fmi2Functions.h"
+#include <math.h>
 #include <stdlib.h>
 #define STEP 0.001
 {SIGNAL}
@@ -116,10 +116,11 @@ def run_fmu3(work: Path, steps: int) -> str:
     take = """
     for (int i = 0; i < 3; i++) { setpoints[i] = signal(); }
     gain = (float)signal();
-    { double m = signal(); mask = m <= 0.0 ? 0 : (uint8_t)m; }
-    hold = signal() > 0.5;"""
+    { double m = signal(); mask = m <= 0.0 ? 0 : (uint8_t)round(m); }
+    hold = signal() != 0.0;"""
     text = f"""#define FMI3_FUNCTION_PREFIX Axes_
 #include "fmi3Functions.h"
+#include <math.h>
 #include <stdlib.h>
 #define STEP 0.002
 {SIGNAL}
@@ -199,7 +200,7 @@ def run_any(folder: Path, work: Path, step: float, steps: int) -> str:
     for index, (function, c, reference, size, values) in enumerate(ports["input"]):
         low, high = (repr(float(min(values))), repr(float(max(values)))) if values else _limits(c)
         clamped = f"v >= {high} ? {high} : v > {low} ? v : {low}"
-        value = "v > 0.5" if function == "Boolean" else f"({c})({clamped})" if high else "v"
+        value = "v != 0.0" if function == "Boolean" else f"({c})round({clamped})" if high else "v"
         count = f", {size}" if standard == 3 else ""
         take += f"for (int i = 0; i < {size}; i++) {{ double v = signal(); in{index}[i] = {value}; }}\n"
         keep += f"{{ {fmi}ValueReference r = {reference}; {fmi}Set{function}(c, &r, 1, in{index}{count}); }}\n"
@@ -231,6 +232,7 @@ def run_any(folder: Path, work: Path, step: float, steps: int) -> str:
         }"""
         log = "fmi3InstanceEnvironment e, fmi3Status s, fmi3String g, fmi3String m"
     text = f"""#include "{fmi}Functions.h"
+#include <math.h>
 #include <stdlib.h>
 #define STEP {step!r}
 {SIGNAL}
@@ -241,7 +243,7 @@ static void logger({log}) {{ }}
 """
     set_and_do = f"if (!ended) {{ {keep} }} {do}"
     text += _main(start, f"(void)signal; {take}", set_and_do, f'{show} puts("");', f"{fmi}Terminate(c);", steps)
-    sources, folders, options = _sources(folder, root, standard)
+    sources, folders, options = listed_sources(folder, root, standard)
     identifier = root.find("CoSimulation").attrib["modelIdentifier"]  # type: ignore[union-attr]
     prefix = f"{identifier}_" if identifier.isidentifier() else "direct_"
     options = ["-DFMI_COSIMULATION", f"-DFMI{standard}_FUNCTION_PREFIX={prefix}", *options]
@@ -259,13 +261,13 @@ def _limits(c: str) -> tuple[str, str]:
     return ("0.0" if match[1] else repr(-float(2**bits))), repr(high)
 
 
-def _sources(folder: Path, root: ElementTree.Element, standard: int) -> tuple[list[Path], list[Path], list[str]]:
+def listed_sources(folder: Path, root: ElementTree.Element, standard: int) -> tuple[list[Path], list[Path], list[str]]:
     """The source files, include folders and options in the FMU's own lists."""
     inside = folder / "sources"
     build = inside / "buildDescription.xml"
     if standard == 3 and build.is_file():
-        configuration = ElementTree.parse(build).getroot().find("BuildConfiguration")
-        assert configuration is not None
+        configurations = ElementTree.parse(build).getroot().findall("BuildConfiguration")
+        configuration = next(each for each in configurations if "platform" not in each.attrib)
         files = [inside / file.attrib["name"] for file in configuration.iter("SourceFile")]
         folders = [inside, *(inside / place.attrib["name"] for place in configuration.iter("IncludeDirectory"))]
         given = configuration.iter("PreprocessorDefinition")

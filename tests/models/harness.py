@@ -15,12 +15,15 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from epg.diagnostics import Diagnostics
-from epg.emit.model import emit_model, model_build
-from epg.models import Model, load_model
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.emit.model import emit_model, model_build
+from epg.generator.emit.model.variables import model_variables
+from epg.generator.importers import Model, load_model
 
 MODELS = Path(__file__).resolve().parent
 HAVE_COMPILER = shutil.which("gcc") is not None and shutil.which("g++") is not None
+RUNTIME = MODELS.parent.parent / "targets" / "runtime"
+INCLUDE = f"-I{RUNTIME / 'include'}"
 STRICT = ["-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Wshadow", "-Wmissing-prototypes", "-Werror"]
 COMMON = ["-O1", "-ffp-contract=off"]
 
@@ -93,7 +96,7 @@ def build(
         path.write_text(text, encoding="utf-8")
     made = model_build(model, name, parameters)
     objects = [
-        compile_file(output / file, output / f"{file}.o", [*STRICT, *options, f"-I{output}"], "c")
+        compile_file(output / file, output / f"{file}.o", [*STRICT, *options, f"-I{output}", INCLUDE], "c")
         for file in made.generated
     ]
     private = [
@@ -108,12 +111,27 @@ def build(
         private += ["-include", str(output / made.forced_header)]
     own = [(output / file, output / f"{file}.o") for file in made.exported_generated]
     own += [(path, output / f"exported_{index}_{path.name}.o") for index, path in enumerate(made.exported)]
-    for source, target in own:
-        objects.append(compile_file(source, target, private, made.language))
-    return Library(name, output, tuple(objects), model)
+    private += ["-fno-common", "-fno-data-sections"]
+    exported = [compile_file(source, target, private, made.language) for source, target in own]
+    for source in sources_of_variables(name, output, exported, instances):
+        objects.append(compile_file(source, output / f"{source.name}.o", [*STRICT, *options, INCLUDE], "c"))
+    return Library(name, output, (*objects, *exported), model)
+
+
+def sources_of_variables(name: str, folder: Path, exported: Sequence[Path], instances: int = 1) -> tuple[Path, Path]:
+    """The C files with which a model restarts.  The object files ``exported`` get the symbols that they need."""
+    copies, table = model_variables(name, instances, exported, Diagnostics())
+    for path, copy in zip(exported, copies, strict=True):
+        path.write_bytes(copy)
+    made = folder / f"{name}_export_variables.c"
+    made.write_text(table, encoding="utf-8")
+    return made, RUNTIME / "src" / "model" / "variables.c"
 
 
 def link(objects: Iterable[Path], output: Path, cpp: bool, options: Sequence[str] = ()) -> Path:
+    objects = list(objects)
+    again = [path for path in objects if path.name == "variables.c.o"][1:]  # a linker takes it from one library only
+    objects = [path for path in objects if path not in again]
     run(["g++" if cpp else "gcc", *options, *map(str, objects), "-lm", "-o", str(output)])
     return output
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from epg.documents.source_file import SourceFile, decode
-from epg.models.assignments import exact_number, split_name
-from epg.models.c_code import integer_value, parse_code
-from epg.models.identifiers import to_identifier, unique_identifiers
+from epg.generator.documents.source_file import SourceFile, decode
+from epg.generator.models.assignments import exact_number, split_name
+from epg.generator.models.c_code import integer_value, parse_code
+from epg.generator.models.identifiers import to_identifier, unique_identifiers
 
 
 def parsed(text: str):  # type: ignore[no-untyped-def]

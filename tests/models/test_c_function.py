@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from epg.generator.importers.c_function.c_function_export import CFunctionExport
 from tests.models.exports import Export
 from tests.models.harness import load, loaded
 
@@ -126,7 +127,7 @@ def test_suffix_on_some_names_only(tmp_path: Path) -> None:
         path.write_text(re.sub(r"\bxx_([PIVsR])\b", r"xx_\1pan", path.read_text()))
     model = loaded(folder)
     assert names(model) == PORTS and len(model.parameters) == 4
-    details = model.details
+    details = model.code
     assert (details.parameters, details.states, details.state_count) == ("xx_Ppan", "xx_span", 2)  # type: ignore[attr-defined]
 
 
@@ -144,8 +145,21 @@ def test_step_passed_instead_of_time_is_seen(tmp_path: Path) -> None:
     head, calculate = path.read_text().split("void XXCalculateSubmodel")
     path.write_text(head + "void XXCalculateSubmodel" + calculate.replace("xx_time = t;", "xx_step_size = t;", 1))
     model = loaded(folder)
-    assert model.details.calculate.arguments == ("u", "y", "step")  # type: ignore[attr-defined]
-    assert model.details.initialize.arguments == ("u", "y", "time")  # type: ignore[attr-defined]
+    assert model.code.calculate.arguments == ("u", "y", "step")  # type: ignore[attr-defined]
+    assert model.code.initialize.arguments == ("u", "y", "time")  # type: ignore[attr-defined]
+
+
+def test_a_vector_without_a_name(tmp_path: Path) -> None:
+    """C23 permits parameters without names, in a function that does not use them."""
+    folder = Export().write(tmp_path)
+    main = folder / "xxsubmod.c"
+    text = main.read_text(encoding="utf-8")
+    changed = text.replace("CalculateSubmodel (XXDouble *u,", "CalculateSubmodel (XXDouble *,")
+    assert changed != text
+    main.write_text(changed, encoding="utf-8")
+    details = loaded(folder).code
+    assert isinstance(details, CFunctionExport)
+    assert details.calculate.arguments == ("u", "y", "time")
 
 
 def test_reformatted_and_uncommented_source(tmp_path: Path) -> None:
@@ -177,7 +191,7 @@ def test_headers_in_another_case(tmp_path: Path) -> None:
     folder = Export(rename={"xxfuncs.h": "XXfuncs.h", "motionprofiles.h": "MotionProfiles.h"}).write(tmp_path)
     model, diagnostics = load(folder)
     assert model is not None and not diagnostics.items
-    assert {shim.name for shim in model.details.linked.shims} == {"xxfuncs.h", "motionprofiles.h"}  # type: ignore[attr-defined]
+    assert {shim.name for shim in model.code.linked.shims} == {"xxfuncs.h", "motionprofiles.h"}  # type: ignore[attr-defined]
 
 
 def test_missing_files(tmp_path: Path) -> None:

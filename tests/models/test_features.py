@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from epg.diagnostics import Diagnostic
+from epg.generator.diagnostics import Diagnostic
 from tests.models.exports import Export
 from tests.models.harness import load
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 import yaml
 
+from epg.generator.importers.by_hand.hand_written_names import Names, integer_range, is_integer
 from tests.models.harness import MODELS, load, loaded
 
 
@@ -235,3 +236,35 @@ def test_members_that_macros_or_a_base_declare(tmp_path: Path) -> None:
     path = other / "controller.hpp"
     path.write_text(path.read_text().replace("{\n    double gain = 0.0;\n", "{\n"))
     loaded(other)
+
+
+FIELDS = """
+struct Base_less {
+public:
+    unsigned int mode : 3, level : WIDTH; int : 4;
+    const volatile std::int8_t trim:(0x2);
+protected: bool on : 1;
+private slots:
+    double plain;
+    uint64_t count, *list, table[3];
+    struct { unsigned deep : 5; } inner;
+};
+#define WIDTH 6
+"""
+
+
+def test_declarations_of_members(tmp_path: Path) -> None:
+    (tmp_path / "a.h").write_text(FIELDS)
+    names = Names(tmp_path, "a.h", [tmp_path], [], True)
+    found = {}
+    for member in ("mode", "level", "trim", "on", "inner.deep"):
+        declaration = names.declaration("Base_less", member)
+        assert declaration is not None
+        found[member] = integer_range(declaration, names.number(declaration.width))
+    assert found == {"mode": (0, 7), "level": (0, 63), "trim": (-2, 1), "on": (0, 1), "inner.deep": (0, 31)}
+    assert [names.declaration("Base_less", name).width for name in ("plain", "count", "table[2]")] == ["", "", ""]  # type: ignore[union-attr]
+    assert names.declaration("Base_less", "list") is None and names.declaration("other_t", "mode") is None
+    assert is_integer(names.declaration("Base_less", "count")) and not is_integer(  # type: ignore[arg-type]
+        names.declaration("Base_less", "plain")  # type: ignore[arg-type]
+    )
+    assert {"int", "unsigned", "slots", "private"}.isdisjoint(names.structs["Base_less"].members)

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from epg.diagnostics import Diagnostics
-from epg.models import load_model
-from epg.source import Span
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.importers import load_model
+from epg.generator.source import Span
 from tests.models.exports import Export
 from tests.models.harness import load
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A measure of the tests: small faults are put into EPG, one at a time, and a test must fail for each of them.
+"""A measure of the tests: small faults (*mutants*) are put into EPG, one at a time, and a test must fail for each.
 
-``python_source`` and ``c_source`` make the mutants and ``choice`` selects some.  ``workshop`` and ``runtime`` try one
-mutant, ``trial`` many, and ``results`` stores the results.  ``python -m tests.mutants --help`` explains how to run it.
+A mutant replaces a text that occurs once in its file.  ``draw`` makes mutants, ``trial`` runs the tests of their rooms
+in copies of the project, and ``record`` stores which test noticed which.  ``rooms.yaml`` lists the tests of each room.
 """

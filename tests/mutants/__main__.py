@@ -1,85 +1,163 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tries mutants of the generator and the runtime against the tests.
-
-Two commands are common::
-
-    python -m tests.mutants --check     # fails if a mutant that was caught before now survives
-    python -m tests.mutants --choose    # tries 200 mutants that tests/mutants/caught.txt does not list
-"""
+"""Renews the record of mutants, or checks it."""
 
 from __future__ import annotations
 
 import argparse
+import itertools
+import random
 import sys
 import tempfile
 import time
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import replace
 from pathlib import Path
+from queue import SimpleQueue
 
-from . import results
-from .choice import AREAS, Choice, all_mutants, choose, find
-from .results import CAUGHT, SURVIVED, Result
-from .trial import Trial
-from .workshop import ALL, SOME
+from tests.checkout import ROOT
+from tests.size.measure import files
 
-RESULTS = Path(__file__).resolve().parent / "caught.txt"
+from . import record
+from .draw import SUFFIXES, compiles, mutants
+from .record import NONE, Mutant
+from .trial import Copy
+
+NOT_DRAWN = ("tests/", "docs/")
 
 
 def main(arguments: list[str]) -> int:
-    parser = argparse.ArgumentParser(prog="python -m tests.mutants", description=(__doc__ or "").partition("\n")[0])
-    task = parser.add_mutually_exclusive_group(required=True)
-    task.add_argument("--check", action="store_true", help="try the mutants of the file of results again")
-    task.add_argument("--choose", action="store_true", help="choose mutants and add them to the file of results")
-    parser.add_argument("--results", type=Path, default=RESULTS, help="the file of results")
-    parser.add_argument("--each", type=int, default=50, help="how many mutants to choose in each of the four areas")
-    parser.add_argument("--seed", type=int, default=1, help="another number chooses other mutants")
+    parser = argparse.ArgumentParser(prog=record.COMMAND, description=__doc__)
+    task = parser.add_mutually_exclusive_group()
+    task.add_argument("--mend", action="store_true", help="only replace mutants that do not apply")
+    task.add_argument("--check", action="store_true", help="try the mutants that were noticed, and write nothing")
+    task.add_argument("--report", action="store_true", help="print the age; fail if a mutant does not apply")
+    parser.add_argument("--each", type=int, default=3, help="how many mutants each room must have")
+    parser.add_argument("--seed", type=int, default=1, help="another number draws other mutants")
+    parser.add_argument("--minutes", type=float, default=18, help="begin no mutant after this time")
     parser.add_argument("--jobs", type=int, default=2, help="how many mutants are tried at the same time")
     options = parser.parse_args(arguments)
+    known = record.read()
+    if options.report:
+        old = record.age()
+        print(record.summary(known, old))
+        wrong = list(record.problems(known, old))
+        print("".join(f"  {problem}\n" for problem in wrong), end="")
+        return 1 if wrong else 0
+    kept, chosen = _chosen(options, known)
     began = time.monotonic()
-    everything = all_mutants()
+    end = began + 60 * options.minutes
     with tempfile.TemporaryDirectory(prefix="epg-mutants-") as folder:
-        if options.choose:
-            status = _choose(options, everything, Path(folder))
+        states = try_all(chosen, Path(folder), options.jobs, end)
+    tried = [replace(one, state=states.get(one, one.state)) for one in chosen]
+    lost = [one for one in chosen if one.kind == "noticed" and states.get(one) == NONE]
+    for one in lost:
+        print(f"lost: {one.file}: no test notices this any more\n  - {one.before}\n  + {one.after}")
+    late = len(chosen) - len(states)
+    if not options.check:
+        record.write([*kept, *tried])
+        if not late and not options.mend:
+            record.renewed()
+    print(record.summary([*kept, *tried], record.age()))
+    print(f"{f'{late} were late' if late else 'all were tried'}; {(time.monotonic() - began) / 60:.0f} minutes")
+    return 1 if lost else 0
+
+
+def _chosen(options: argparse.Namespace, known: Sequence[Mutant]) -> tuple[list[Mutant], list[Mutant]]:
+    """The mutants that are kept as they are, and those to try: those that need all tests of their room come last."""
+    applying = []
+    for one in known:
+        if moved := _moved(one):
+            applying.append(moved)
         else:
-            status = _check(options, everything, Path(folder))
-    print(f"{(time.monotonic() - began) / 60:.0f} minutes")
-    return status
+            print(f"gone: {one.problem()}")
+    if options.check:
+        return [one for one in applying if one.kind != "noticed"], [one for one in applying if one.kind == "noticed"]
+    drawn = draw(applying, record.rooms(), options.each, options.seed)
+    if options.mend:
+        return applying, drawn
+    again = [one for one in applying if one.kind != "equivalent"]
+    again.sort(key=lambda one: 0 if one.test else 1 + (one.kind == NONE))
+    tested = sum(bool(one.test) for one in again)
+    kept = [one for one in applying if one.kind == "equivalent"]
+    return kept, [*again[:tested], *drawn, *again[tested:]]
 
 
-def _choose(options: argparse.Namespace, everything: list[Choice], folder: Path) -> int:
-    chosen = [one for area in AREAS for one in choose(everything, area, options.each, options.seed, folder)]
-    found = results.read(options.results) if options.results.is_file() else []
-    known = {result.identity for result in found}
-    rest = [one for one in chosen if one.mutant.identity not in known]
-    for one, caught in Trial(folder, options.jobs, SOME).run(rest):
-        found.append(Result(CAUGHT if caught else SURVIVED, one.area, one.mutant.identity))
-        _show(found[-1].state, found[-1], one)
-        results.write(options.results, found)
-    for state in results.STATES:
-        print(f"{state}: {sum(result.state == state for result in found)}")
-    return 0
+def _moved(mutant: Mutant) -> Mutant | None:
+    """The mutant where it applies: in its file, or in the only other file of the same name with its text."""
+    if not mutant.problem():
+        return mutant
+    name = Path(mutant.file).name
+    others = [replace(mutant, file=file) for file in files() if Path(file).name == name]
+    found = [one for one in others if not one.problem()]
+    return found[0] if len(found) == 1 and not (ROOT / mutant.file).is_file() else None
 
 
-def _check(options: argparse.Namespace, everything: list[Choice], folder: Path) -> int:
-    """Tries the mutants that were caught before, with all tests: which tests are the quickest varies between runs."""
-    before = [result for result in results.read(options.results) if result.state == CAUGHT]
-    results_of = {one: result for result in before for one in find(everything, result.identity)}
-    for result in before:
-        if result not in results_of.values():
-            _show("gone", result)
-    survived = set()
-    for one, caught in Trial(folder, options.jobs, ALL).run(list(results_of)):
-        if not caught:
-            survived.add(results_of[one])
-            _show(SURVIVED, results_of[one], one)
-    found = len(set(results_of.values()))
-    print(f"{found - len(survived)} are still caught, {len(survived)} survive, {len(before) - found} are gone")
-    return 1 if survived else 0
+def sources() -> list[str]:
+    """The files from which mutants are drawn."""
+    return [file for file in files() if Path(file).suffix in SUFFIXES and not file.startswith(NOT_DRAWN)]
 
 
-def _show(state: str, result: Result, one: Choice | None = None) -> None:
-    place = f" {one.mutant.file}:{one.mutant.lines.start}" if one else ""
-    found = result.identity
-    print(f"{state}: {result.area} {found.function}{place}\n  - {found.before}\n  + {found.after}", flush=True)
+def draw(known: Iterable[Mutant], rooms: Mapping[str, Sequence[str]], each: int, seed: int) -> list[Mutant]:
+    """As many new mutants as each room lacks, one of each room after the other.  At first, files have at most one."""
+    places: dict[str, list[str]] = {room: [] for room in rooms}
+    for file in sources():
+        if room := record.room_of(file, rooms):
+            places[room].append(file)
+    have = Counter(record.room_of(one.file, rooms) for one in known)
+    lines = {(one.file, one.before) for one in known}
+    drawn = []
+    for room, some in places.items():
+        chance = random.Random(f"{seed} {room}")
+        made = sorted(_in_some_order(some, chance) if have[room] < each else [], key=lambda entry: entry[0])
+        new = (one for _, one in made if (one.file, one.before) not in lines and _is_correct(one))
+        drawn += list(enumerate(itertools.islice(new, max(0, each - have[room]))))
+    return [one for _, one in sorted(drawn, key=lambda entry: entry[0])]
+
+
+def _in_some_order(names: Sequence[str], chance: random.Random) -> Iterator[tuple[int, Mutant]]:
+    """The mutants of files, each with its number in its file."""
+    for file in chance.sample(names, len(names)):
+        made = list(mutants((ROOT / file).read_text(encoding="utf-8"), Path(file).suffix))
+        yield from enumerate(Mutant(file, *texts) for texts in chance.sample(made, len(made)))
+
+
+def _is_correct(mutant: Mutant) -> bool:
+    source = (ROOT / mutant.file).read_text(encoding="utf-8")
+    return compiles(source.replace(mutant.before, mutant.after), Path(mutant.file).suffix)
+
+
+def try_all(chosen: Sequence[Mutant], folder: Path, jobs: int, end: float) -> dict[Mutant, str]:
+    """The new state of each mutant.  Those that would begin after ``end`` are left out."""
+    rooms = record.rooms()
+    free: SimpleQueue[Copy] = SimpleQueue()
+    for number in range(jobs):
+        (folder / f"{number}").mkdir()
+        free.put(Copy(folder / f"{number}"))
+
+    def state_of(one: Mutant) -> str | None:
+        copy = free.get()
+        try:
+            room = record.room_of(one.file, rooms)
+            return copy.state_of(one, rooms[room]) if room and time.monotonic() < end else None
+        finally:
+            free.put(copy)
+
+    states = {}
+    pool = ThreadPoolExecutor(jobs)
+    try:
+        trials = {pool.submit(state_of, one): one for one in chosen}
+        for trial in as_completed(trials):
+            one, state = trials[trial], trial.result()
+            if state is not None:
+                states[one] = state
+                print(f"{one.file}: {state}\n  - {one.before}\n  + {one.after}", flush=True)
+    except KeyboardInterrupt:
+        print("waiting for the mutants that have begun", flush=True)
+    finally:
+        pool.shutdown(cancel_futures=True)
+    return states
 
 
 if __name__ == "__main__":

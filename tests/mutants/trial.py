@@ -1,78 +1,118 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tries mutants, several at the same time."""
+"""Runs the tests of a room in a copy of the project with a mutant."""
 
 from __future__ import annotations
 
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
 import time
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import contextmanager
 from pathlib import Path
-from queue import SimpleQueue
 
-from .choice import Choice
-from .runtime import Objects
-from .workshop import Workshop
+from epg.generator.bootstrap import cache_folder
+from tests.checkout import ROOT, listed
 
-IN_PROCESS = [
-    *(
-        "tests/errors",
-        "tests/documents",
-        "tests/check",
-        "tests/resolve",
-        "tests/emit",
-        "tests/runtime/test_templates.py",
-    ),
-    *("tests/catalog/test_builtin_catalog.py", "tests/catalog/test_wrong_catalog.py"),
-    *("tests/cli/test_commands.py", "tests/cli/test_schema.py", "tests/connect/test_view.py"),
-]
-"""Tests that call EPG in their own process."""
-CLOSED_LOOP = ["tests/runtime/test_faulty_robot.py"]
-"""Tests that start EPG as a user does.
+from .record import NONE, NOT_TRIED, Mutant
 
-They run last, for mutants in the areas :data:`RUNS` that survive the others.
-"""
-RUNS = ("emit", "runtime")
+LIMIT = 600
+"""Seconds after which tests count as endless, which is a failure of the first one."""
+_FAILED = re.compile(r"^(?:FAILED|ERROR) (.*?)(?: - .*)?$", re.MULTILINE)
+_PASSED = re.compile(r"\b[1-9]\d* passed\b")
 
 
-class Trial:
-    """Copies of the project in ``folder``, one for each of ``jobs`` threads."""
+class Copy:
+    """A copy of the project in ``folder``; used by one thread."""
 
-    def __init__(self, folder: Path, jobs: int, at_most: float) -> None:
-        """``at_most`` limits the seconds of tests for one mutant of Python."""
+    def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._jobs = jobs
-        self._at_most = at_most
-        self._free: SimpleQueue[Workshop] = SimpleQueue()
+        self._tree = folder / "epg"
+        self._stamp = time.time()
+        for name in listed("--cached", "--others", "--exclude-standard"):
+            (self._tree / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(ROOT / name, self._tree / name)
+        self._environment = _environment(folder)
+        self._sound: set[str] = set()
+        self._broken: set[str] = set()
 
-    def run(self, chosen: Sequence[Choice]) -> Iterator[tuple[Choice, bool]]:
-        """Each mutant, and True if a test catches it, in any order."""
-        workshops = []
-        began = time.monotonic()
-        for number in range(self._jobs):
-            copy = self._folder / f"copy{number}"
-            copy.mkdir()
-            workshops.append(Workshop(copy, IN_PROCESS))
-            self._free.put(workshops[-1])
-        with ThreadPoolExecutor(self._jobs) as pool:
-            parts = pool.map(lambda k: workshops[k].record(k, self._jobs), range(self._jobs))
-            self._coverage = {test: found for part in parts for test, found in part.items()}
-        minutes = (time.monotonic() - began) / 60
-        print(f"{len(self._coverage)} tests without a mutant: {minutes:.0f} minutes", flush=True)
-        self._objects = Objects(self._folder / "objects")
-        with ThreadPoolExecutor(self._jobs) as pool:
-            trials = {pool.submit(self._try, one): one for one in chosen}
-            for trial in as_completed(trials):
-                yield trials[trial], trial.result()
-        for workshop in workshops:
-            workshop.close()
+    def state_of(self, mutant: Mutant, tests: Sequence[str]) -> str:
+        """The test that notices a mutant and passes without it, or ``none``, or ``not tried`` if all are skipped.
 
-    def _try(self, one: Choice) -> bool:
-        workshop = self._free.get()
+        The test that noticed it before runs first, then all tests of its room.
+        """
+        state = self._noticed_by(mutant, [mutant.test]) if mutant.test else NONE
+        return self._noticed_by(mutant, tests) if state in (NONE, NOT_TRIED) else state
+
+    def _noticed_by(self, mutant: Mutant, tests: Sequence[str]) -> str:
+        while True:
+            left_out = sorted(self._broken)
+            with self._mutated(mutant):
+                state = self._run([*tests, *(f"--deselect={test}" for test in left_out)])
+            if state in (NONE, NOT_TRIED) or self._is_sound(state):
+                return state
+            if state in left_out:
+                return NOT_TRIED
+
+    def _is_sound(self, test: str) -> bool:
+        """True if a test passes without a mutant."""
+        if test not in self._sound | self._broken:
+            found = self._run([test])
+            (self._sound if found == NONE else self._broken).add(test)
+        return test in self._sound
+
+    def _run(self, tests: Sequence[str]) -> str:
+        """The first test that fails, or ``none``, or ``not tried`` if no test ran."""
+        options = ["-q", "-x", "--tb=no", "--no-header", "-p", "no:cacheprovider", "-m", "check or check_all"]
+        process = subprocess.Popen(
+            [sys.executable, "-m", "pytest", *options, "--basetemp", str(self._folder / "tests"), *tests],
+            cwd=self._tree,
+            env=self._environment,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+            start_new_session=True,
+        )
         try:
-            if one.mutant.file.endswith(".c"):
-                caught = self._objects.catch(one.mutant, workshop.folder)
-            else:
-                caught = workshop.catches(one.mutant, self._coverage, self._at_most)
-            return caught or (one.area in RUNS and workshop.catches_last(one.mutant, CLOSED_LOOP))
+            printed, _ = process.communicate(timeout=LIMIT)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.communicate()
+            return tests[0]
+        # 4 says that a test of the record has another name now, and 5 that there are no tests.
+        if process.returncode in (0, 4, 5):
+            return NONE if _PASSED.search(printed) else NOT_TRIED
+        found = _FAILED.search(printed)
+        return found[1] if found else tests[0]
+
+    @contextmanager
+    def _mutated(self, mutant: Mutant) -> Iterator[None]:
+        path = self._tree / mutant.file
+        original = path.read_text(encoding="utf-8")
+        self._write(path, original.replace(mutant.before, mutant.after))
+        try:
+            yield
         finally:
-            self._free.put(workshop)
+            self._write(path, original)
+
+    def _write(self, path: Path, text: str) -> None:
+        """Writes a file with a new time stamp, by which Python, Jinja and CMake see that it has changed."""
+        path.write_text(text, encoding="utf-8")
+        self._stamp += 2
+        os.utime(path, (self._stamp, self._stamp))
+
+
+def _environment(folder: Path) -> dict[str, str]:
+    """The environment without variables of EPG, and with its own cache: a mutant may damage the templates there."""
+    cache = folder / "cache"
+    cache.mkdir()
+    users = cache_folder()
+    for entry in users.iterdir() if users.is_dir() else ():
+        if not entry.name.startswith("templates-"):
+            (cache / entry.name).symlink_to(entry)
+    others = {name: value for name, value in os.environ.items() if not name.startswith("EPG_")}
+    return {**others, "EPG_CACHE": str(cache)}

@@ -16,7 +16,7 @@ from xml.etree.ElementTree import Element
 import pytest
 
 from epg.cli.main import main
-from epg.messages.library import Library, known_message
+from epg.generator.messages.library import Library, known_message
 
 from .description import topic, write_description
 
@@ -219,3 +219,82 @@ def test_what_is_missing_is_told(robot: Path, capsys: pytest.CaptureFixture[str]
     (robot.parent / "arm.plotjuggler.xml").write_text("mine", encoding="utf-8")
     assert main(["describe", str(robot), "--plotjuggler", "--output", str(robot.parent)]) == 1
     assert "this file exists" in capsys.readouterr().err
+
+
+EVERYTHING = ["--plotjuggler", "--foxglove", "--ros2-control", "--force", "--board", "host"]
+OTHERS = (None, True, -1, 1e300, 7, "", "a/b c", [], [[1]], {}, {"a": None})
+"""A value of a description is replaced by each of these."""
+
+
+def nodes(value: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str | int, ...]]:
+    """The paths to all values of a document, the outermost first; lists of many similar values by their first two."""
+    yield path
+    children = value.items() if isinstance(value, dict) else enumerate(value[:2]) if isinstance(value, list) else ()
+    for key, child in children:
+        yield from nodes(child, (*path, key))
+
+
+def damaged(data: Any, path: tuple[str | int, ...], value: object) -> Any:
+    """A copy of ``data`` in which ``value`` is at ``path``."""
+    if not path:
+        return value
+    copy = dict(data) if isinstance(data, dict) else list(data)
+    copy[path[0]] = damaged(data[path[0]], path[1:], value)
+    return copy
+
+
+@pytest.fixture(params=["robot", "generated"])
+def description(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
+    if request.param == "generated":
+        file = tmp_path / "jiwy.json"
+        command = ["generate", "jiwy", "--tcf", "rpi_pico_bare_metal_jiwy.tcf", "--output", str(tmp_path)]
+        command += ["--model", str(ROOT / "examples/jiwy/model")]
+        assert main([*command, "--bindings", str(ROOT / "examples/jiwy/jiwy.bindings.yaml")]) == 0
+        return file
+    file = request.getfixturevalue("robot")
+    data = json.loads(file.read_text(encoding="utf-8"))
+    data["control"] = {"enable_at_start": False}
+    data["communication"] |= {
+        "domain": 3,
+        "usb": {"manufacturer": "A", "vendor_id": 4, "serial": "B", "serial_digits": 8},
+    }
+    data["subscriptions"][0] |= {"timeout": 0.5, "on_timeout": "disable"}
+    data["publications"].append(topic("state", "arm/msg/State", values=["state/a.0"], elements=["a.0"]))
+    data["messages"] = {"arm/msg/State": "std_msgs/Header header\nfloat64[2] a\n"}
+    file.write_text(json.dumps(data, indent=1), encoding="utf-8")
+    return file
+
+
+def test_a_damaged_description_is_never_a_bug(description: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The file is cut at every 50th byte, and each of its values is replaced by values of other types."""
+    text = description.read_bytes()
+    data = json.loads(text)
+    files = [text[:end] for end in range(0, len(text), 50)]
+    files += [json.dumps(damaged(data, path, value)).encode() for path in nodes(data) for value in OTHERS]
+    capsys.readouterr()
+    refused = 0
+    for content in files:
+        description.write_bytes(content)
+        status = main(["describe", str(description), *EVERYTHING, "--output", str(description.parent / "out")])
+        said = capsys.readouterr().err
+        assert status in (0, 1), f"{said}\n{content.decode(errors='replace')}"
+        assert status == 0 or str(description) in said
+        refused += "[description-damaged]" in said
+    assert refused > len(files) / 4
+
+
+def test_a_damaged_description_is_named_with_the_command_that_writes_it(
+    robot: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    build = robot.parent / "my build"
+    file = build / "epg/arm/arm.json"
+    file.parent.mkdir(parents=True)
+    (build / "CMakeCache.txt").touch()
+    data = json.loads(robot.read_text(encoding="utf-8"))
+    data["communication"]["period"] = "33 ms"
+    file.write_text(json.dumps(data), encoding="utf-8")
+    for place in (file, build):
+        assert main(["describe", str(place), "--plotjuggler"]) == 1
+        said = capsys.readouterr().err
+        assert f"{file}: error: " in said and "'communication.period' is not a possible number" in said
+        assert f"hint: run \"cmake '{build}'\": CMake then writes this file again" in said

@@ -16,9 +16,9 @@ from typing import Any
 import pytest
 
 from epg.cli.main import main
-from epg.data import targets_roots
-from epg.ros.robot import USB_NAMES
+from epg.generator.data import targets_roots
 from epg.ros.systemd_units import device_unit
+from epg.runs.robot import USB_NAMES
 from tests.emulator.toolchain import ROOT
 
 from .description import write_description
@@ -256,7 +256,7 @@ def test_the_command_of_a_unit_survives_systemd_and_bash(robots: Path) -> None:
 
 def test_systemd_finds_nothing_wrong(robots: Path) -> None:
     if shutil.which("systemd-analyze") is None:
-        pytest.skip("systemd-analyze is not installed: apt install systemd")
+        pytest.skip("systemd is not installed: sudo apt install systemd")
     assert main(["launch", *ALL, *WIRING, "--systemd", "--workspace", "/home/a b/50%"]) == 0
     files = sorted((robots / "systemd").glob("*.service"))
     done = subprocess.run(["systemd-analyze", "verify", *files], capture_output=True, text=True)
@@ -270,7 +270,7 @@ def test_systemd_finds_nothing_wrong(robots: Path) -> None:
 @pytest.mark.parametrize("path", [BY_ID.format(FIRST), "/dev/ttyAMA0", "/dev//a b/", "/dev/.x-é", "/.dev/x:y_z"])
 def test_names_of_device_units_are_systemds(path: str) -> None:
     if shutil.which("systemd-escape") is None:
-        pytest.skip("systemd-escape is not installed: apt install systemd")
+        pytest.skip("systemd is not installed: sudo apt install systemd")
     done = subprocess.run(
         ["systemd-escape", "--path", "--suffix=device", path], capture_output=True, text=True, check=True
     )
@@ -304,7 +304,8 @@ def test_names_that_epg_would_not_write_are_not_read(
     place[key] = text
     file.write_text(json.dumps(data), encoding="utf-8")
     assert main(["launch", "relbot.json", "--board", f"relbot={FIRST}", "--systemd"]) == 1
-    assert "this is not the description of a generated target [not-a-description]" in capsys.readouterr().err
+    assert "relbot.json: error: this description of a target is damaged: '" in (said := capsys.readouterr().err)
+    assert "[description-damaged]" in said
     assert not list(robots.rglob("*.service")) and not list(robots.glob("*.py"))
 
 

@@ -20,7 +20,7 @@ from typing import Any
 import pytest
 
 pytest.importorskip("tests.ros2.packages", exc_type=ImportError)
-pytest.importorskip("rosbags", reason="rosbags is not installed: pip install -r epg/lock/test_all.txt")
+pytest.importorskip("rosbags", reason="rosbags is not installed: pip install -r epg/generator/lock/test_all.txt")
 pytest.importorskip("mcap", reason="mcap is not installed: pip install mcap")
 
 from cyclonedds.core import Policy, Qos
@@ -33,6 +33,7 @@ from mcap.reader import make_reader
 from epg.cli.main import main
 from tests.ros2.definitions import type_hash
 from tests.ros2.network import Network
+from tests.waiting import until
 
 from .description import topic, write_description
 from .types import TYPES, msg
@@ -313,7 +314,7 @@ def test_names_of_a_board(net: Network, tmp_path: Path) -> None:
     assert rows(tmp_path / "b/topics.csv")
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_an_interrupted_recording_is_complete(net: Network, tmp_path: Path, number: signal.Signals) -> None:
     robot = write_description(tmp_path / "robot.json")
     command = [sys.executable, str(ROOT / "epg"), "record", str(robot), "--output", str(tmp_path), "--mcap"]
@@ -321,10 +322,8 @@ def test_an_interrupted_recording_is_complete(net: Network, tmp_path: Path, numb
         process = subprocess.Popen(
             command, env=net.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
         )
-        deadline = time.monotonic() + 20.0
         topics = tmp_path / "topics.csv"
-        while not topics.is_file() and time.monotonic() < deadline:
-            time.sleep(0.02)
+        until(topics.is_file)
         time.sleep(1.5)
         process.send_signal(number)
         out, err = process.communicate(timeout=20)

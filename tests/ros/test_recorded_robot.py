@@ -12,20 +12,21 @@ from pathlib import Path
 import pytest
 
 pytest.importorskip("tests.ros2.packages", exc_type=ImportError)
-pytest.importorskip("rosbags", reason="rosbags is not installed: pip install -r epg/lock/test_all.txt")
+pytest.importorskip("rosbags", reason="rosbags is not installed: pip install -r epg/generator/lock/test_all.txt")
 
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.pub import DataWriter
 from cyclonedds.topic import Topic
 from rosbags.highlevel import AnyReader
 
-from epg import bootstrap
 from epg.cli.main import main
-from epg.messages.library import Library
+from epg.generator import bootstrap
+from epg.generator.messages.library import Library
 from epg.ros.dds_types import dds_type
 from tests.emulator.toolchain import Missing
 from tests.ros2.build import build_robots
 from tests.ros2.network import Network, running
+from tests.waiting import until
 
 from .test_record import RELIABLE, rows
 from .types import msg
@@ -55,6 +56,7 @@ def test_messages_of_any_type(net: Network, jiwy: Path, tmp_path: Path, capsys: 
     header = dds_type(library, "std_msgs/msg/Header")(dds_type(library, "builtin_interfaces/msg/Time")(1, 2), "x")
 
     def command() -> None:
+        until((tmp_path / "run/topics.csv").is_file)
         time.sleep(2.0)
         for number in range(20):
             writer.write(gripper(header, True, 1, [0.0, number / 100, 0.0], -7, "left", number / 50))
@@ -93,6 +95,7 @@ def test_jiwy(jiwy: Path, net: Network, tmp_path: Path, capsys: pytest.CaptureFi
     writer = DataWriter(participant, Topic(participant, "rt/robot_host/pan_subscriber", msg.Float64), qos=RELIABLE)
 
     def command() -> None:
+        until((tmp_path / "run/topics.csv").is_file)
         time.sleep(3.0)
         for setpoint in SETPOINTS:
             writer.write(msg.Float64(setpoint))

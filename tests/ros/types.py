@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
-from epg.diagnostics import Diagnostics
-from epg.messages.library import Library
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.messages.library import Library
+from epg.generator.source import Span
 from epg.ros.dds_types import dds_type
-from epg.source import Span
 
 
 def _all() -> Library:

@@ -4,9 +4,9 @@
 A test module asks for it by ``pytest.importorskip("tests.ros2.packages", exc_type=ImportError)`` before its imports.
 """
 
-from epg import bootstrap
+from epg.generator import bootstrap
 
 try:
     bootstrap.ensure("ros")
 except bootstrap.MissingPackages:
-    raise ImportError("CycloneDDS for Python is not installed: python -m pip install cyclonedds") from None
+    raise ImportError("CycloneDDS for Python is not installed: pip install cyclonedds") from None

@@ -186,6 +186,16 @@ class Graph:
         """The result of ``ros2 node list``: nodes of present participants with an enclave, which are those of ROS 2."""
         return sorted(_full(node) for gid, nodes in self.nodes.items() if gid in self.enclaves for node in nodes)
 
+    def knows_all_of(self, name: str) -> bool:
+        """Whether all endpoints are known that a node of a present participant says it has."""
+        return all(
+            {bytes(gid.data) for gid in node.reader_gid_seq} <= self.readers.keys()
+            and {bytes(gid.data) for gid in node.writer_gid_seq} <= self.writers.keys()
+            for participant, nodes in self.nodes.items()
+            for node in nodes
+            if participant in self.enclaves and _full(node) == name
+        )
+
     def _owner(self, gid: bytes, which: str) -> str | None:
         for nodes in self.nodes.values():
             for node in nodes:

@@ -21,7 +21,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from epg.simulate.scenario import Profile
+from epg.runs.scenario import Profile
 from tests.ros2.build import Build
 from tests.ros2.messages import Float64_
 from tests.ros2.network import Network, running

@@ -91,7 +91,7 @@ def meet(peer: Peer, node: str = NODE) -> None:
     def known() -> bool:
         endpoints = [*peer.graph.publications(), *peer.graph.subscriptions()]
         own = [endpoint for endpoint in endpoints if endpoint.node == node]
-        return node in peer.graph.node_names() and len(own) >= 5
+        return node in peer.graph.node_names() and peer.graph.knows_all_of(node) and len(own) >= 5
 
     assert peer.spin_until(known), (peer.graph.node_names(), peer.graph.publications(), peer.graph.subscriptions())
 
@@ -282,7 +282,7 @@ def test_diagnostics_tell_state_and_statistics(jiwy: Path, net: Network, tmp_pat
         status = diagnostics_of(peer, told, lambda values: int(values["cycles"]) > 500)
         assert (status.message.split(";")[0], status.hardware_id) == ("enabled", "7")
         assert status.level == (0 if status.message == "enabled" else 1)  # a busy computer has overruns
-        assert status.name.endswith("JIWY_node")
+        assert status.name == "robot_7/JIWY_node"
         values = _values(status)
         assert values["fault"] == "none" and values["malformed"] == "0" and len(values["firmware"]) == 16
         stamp = told.messages[-1].header.stamp

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import itertools
+import os
+import signal
 from pathlib import Path
 
 import pytest
@@ -10,10 +13,10 @@ import pytest
 pytest.importorskip("tests.ros2.packages", exc_type=ImportError)
 
 from tests.ros2.build import Build
-from tests.ros2.messages import DiagnosticArray_, Parameter_, ParameterEvent_, ParameterValue_
+from tests.ros2.messages import Bool_, DiagnosticArray_, Parameter_, ParameterEvent_, ParameterValue_
 from tests.ros2.network import Network
 from tests.ros2.peer import Client, Peer, user_data
-from tests.ros2.test_dds_node import NODE, jiwy, meet, robot
+from tests.ros2.test_dds_node import NODE, diagnostics_of, jiwy, meet, meet_and_wait, robot
 
 __all__ = ["jiwy"]
 
@@ -66,21 +69,100 @@ def test_requests_of_two_clients_are_answered_one_after_the_other(jiwy: Path, ne
         assert all(c.reply(number).success for c, number in sent)
 
 
-def test_a_request_without_the_header_of_rmw_cyclonedds_is_malformed(jiwy: Path, net: Network, tmp_path: Path) -> None:
-    """A client without `clientid` is another implementation's, whose header is not in the request."""
+def test_a_request_to_disable_does_not_wait_for_replies(jiwy: Path, net: Network, tmp_path: Path) -> None:
+    """A request to enable that waits when one to disable arrives never acts."""
     with robot(net, jiwy, tmp_path), Peer(net.domain, "tool") as peer:
+        enable, reset = client(peer, "enable", "std_srvs/srv/SetBool"), client(peer, "reset", "std_srvs/srv/Trigger")
+        enable.call(True)
+        reset.call(0)
+        refused = 0
+        for _ in range(20):
+            first, on, off = reset.send(0), enable.send(True), enable.send(False)
+            assert reset.reply(first).success
+            reply = enable.reply(on)
+            assert reply.success or reply.message == "refused, stopped by service"
+            refused += not reply.success
+            assert enable.reply(off).message == "disabled"
+        assert refused > 0
+        assert enable.call(True).message == "enabled"
+
+
+def test_a_stop_of_the_topic_beside_the_service_is_never_lost(jiwy: Path, net: Network, tmp_path: Path) -> None:
+    """In each round, a `false` of the topic races a `true` of the service."""
+    rounds = 200
+    with robot(net, jiwy, tmp_path) as jiwy_robot, Peer(net.domain, "tool") as peer:
+        enable = client(peer, "enable", "std_srvs/srv/SetBool")
+        topic = peer.publisher("/robot_7/JIWY_node/enable", Bool_)
+        assert meet_and_wait(peer, lambda: topic.matched == 1)
+        enable.call(False)
+        for number in range(rounds):
+            assert enable.call(True).message == "enabled"
+            if number % 2:
+                topic.publish(Bool_(False))
+            sent = enable.send(True)
+            if not number % 2:
+                topic.publish(Bool_(False))
+            reply = enable.reply(sent)
+            assert reply.success or reply.message == "refused, stopped by topic"
+            peer.spin(0.01)
+        jiwy_robot.end()
+        driven = [value != 0.0 for value in jiwy_robot.signal("plant.inputs.duty_pan")]
+        assert sum(on and not before for before, on in itertools.pairwise(driven)) >= rounds
+
+
+def test_requests_that_wait_while_the_topic_stops_never_act(jiwy: Path, net: Network, tmp_path: Path) -> None:
+    """Each request is in work for some control cycles: when the `false` arrives, others wait in the queue."""
+    rounds, requests = 50, 8
+    with robot(net, jiwy, tmp_path) as jiwy_robot, Peer(net.domain, "tool") as peer:
+        enable, reset = client(peer, "enable", "std_srvs/srv/SetBool"), client(peer, "reset", "std_srvs/srv/Trigger")
+        topic = peer.publisher("/robot_7/JIWY_node/enable", Bool_)
+        assert meet_and_wait(peer, lambda: topic.matched == 1)
+        enable.call(False)
+        reset.call(0)
+        refused = 0
+        for number in range(rounds):
+            if number % 2:  # all of them wait for the program
+                os.kill(jiwy_robot.process.pid, signal.SIGSTOP)
+            sent = [enable.send(True) for _ in range(requests)]
+            topic.publish(Bool_(False))
+            os.kill(jiwy_robot.process.pid, signal.SIGCONT)
+            replies = [enable.reply(each) for each in sent]
+            after = list(itertools.dropwhile(lambda reply: reply.success, replies))
+            assert [reply.message for reply in after] == ["refused, stopped by topic"] * len(after), number
+            refused += len(after)
+            assert reset.call(0).message == "disabled, without a fault", number
+        assert refused > rounds
+        assert enable.call(True).message == "enabled"
+
+
+def test_a_request_without_the_header_of_rmw_cyclonedds_is_malformed(jiwy: Path, net: Network, tmp_path: Path) -> None:
+    """A client without `clientid` is another implementation's, whose header is not in the request.
+
+    The program says so once for each client, and `/diagnostics` names the RMW.
+    """
+    with robot(net, jiwy, tmp_path) as jiwy_robot, Peer(net.domain, "tool") as peer:
         foreign = peer.client(f"{NODE}/enable", "std_srvs/srv/SetBool", identified=False)
         assert foreign.wait_for_service()
         peer.spin(0.3)
         numbers = [foreign.send(False) for _ in range(30)]
         assert foreign.reply(numbers[-1], timeout=1.0) is None
         assert malformed(peer) >= 10  # the reader keeps the last ten
+        told = peer.subscription("/diagnostics", DiagnosticArray_)
+        advice = "a client of another RMW gets no reply: run it with RMW_IMPLEMENTATION=rmw_cyclonedds_cpp"
+        diagnostics_of(peer, told, lambda values: values["client_advice"] == advice)
         assert client(peer, "enable", "std_srvs/srv/SetBool").call(True).success
+        assert (
+            jiwy_robot.end().count(
+                f"warning: a client of another RMW asks for {NODE}/enable: it gets no reply\n"
+                "hint: run it with RMW_IMPLEMENTATION=rmw_cyclonedds_cpp\n"
+            )
+            == 1
+        )
 
 
 # Parameters
 
-DOUBLE, INTEGER = 3, 2
+INTEGER, DOUBLE, STRING = 2, 3, 4
 KP = "Pan.PID.kp"
 
 
@@ -124,14 +206,15 @@ def test_parameters_are_listed_described_read_and_set(jiwy: Path, net: Network, 
         events = peer.subscription("/parameter_events", ParameterEvent_)
         assert peer.spin_until(lambda: bool(events.reader.get_matched_publications()))
         peer.spin(0.3)
-        wanted = [parameter(KP, 3.5), parameter(KP, 21.0), parameter(KP, 3, INTEGER), parameter("Tilt.PID.kp", 4.5)]
+        wanted = [parameter(KP, 3.5), parameter(KP, 21.0), parameter(KP, 3, STRING)]
+        wanted.append(parameter("Tilt.PID.kp", 4, INTEGER))
         results = client(peer, "set_parameters", "rcl_interfaces/srv/SetParameters").call(wanted).results
         assert [result.successful for result in results] == [True, False, False, True]
-        assert numbers_of(peer, [KP, "Tilt.PID.kp"]) == [3.5, 4.5]
+        assert numbers_of(peer, [KP, "Tilt.PID.kp"]) == [3.5, 4.0]
         assert peer.spin_until(lambda: bool(events.received))
         (event,) = events.messages
         assert (event.node, event.new_parameters, event.deleted_parameters) == (NODE, [], [])
-        assert [(p.name, p.value.double_value) for p in event.changed_parameters] == [(KP, 3.5), ("Tilt.PID.kp", 4.5)]
+        assert [(p.name, p.value.double_value) for p in event.changed_parameters] == [(KP, 3.5), ("Tilt.PID.kp", 4.0)]
 
 
 def test_all_parameters_in_one_request(jiwy: Path, net: Network, tmp_path: Path) -> None:

@@ -22,9 +22,9 @@ FLOAT64, BOOL = (
 @pytest.fixture(scope="session")
 def fastdds_peer(tmp_path_factory: pytest.TempPathFactory) -> Path:
     if not Path("/usr/include/fastdds").is_dir():
-        pytest.skip("Fast DDS is not installed: apt install libfastrtps-dev libfastcdr-dev")
+        pytest.skip("Fast DDS is not installed: sudo apt install libfastrtps-dev libfastcdr-dev")
     if not shutil.which("c++"):
-        pytest.skip("a C++ compiler is missing: apt install g++")
+        pytest.skip("g++ is not installed: sudo apt install g++")
     folder = tmp_path_factory.mktemp("fastdds_peer")
     for command in (
         ["cmake", "-S", str(HERE / "fastdds"), "-B", str(folder), "-G", "Ninja"],

@@ -26,7 +26,7 @@ from tests.ros2.definitions import type_hash
 from tests.ros2.network import Network, running
 
 if shutil.which("ros2") is None:
-    pytest.skip("ROS 2 is not sourced: source /opt/ros/jazzy/setup.bash", allow_module_level=True)
+    pytest.skip("ROS 2 is not sourced: install ROS 2 Jazzy and '. /opt/ros/jazzy/setup.bash'", allow_module_level=True)
 
 NODE = "/robot_7/JIWY_node"
 DIRECT = ("--no-daemon", "--spin-time", "2")
@@ -40,7 +40,7 @@ def ros(request: pytest.FixtureRequest, net: Network) -> dict[str, str]:
     prefixes = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
     if not any((Path(prefix) / "share" / request.param).is_dir() for prefix in prefixes):
         package = f"ros-{os.environ.get('ROS_DISTRO', 'jazzy')}-{request.param.replace('_', '-')}"
-        pytest.skip(f"ROS 2 is not sourced with {request.param}: apt install {package}")
+        pytest.skip(f"ROS 2 is not sourced with {request.param}: sudo apt install {package}")
     environment = {**net.environment, "RMW_IMPLEMENTATION": request.param}
     if request.param != "rmw_cyclonedds_cpp":  # only CycloneDDS supports the tag of the test network
         for mapping in (net.environment, environment):

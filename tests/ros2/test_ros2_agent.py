@@ -23,7 +23,7 @@ from tests.ros2.network import running
 from tests.xrce_agent.real_agent import CYCLONE, RealAgent, program
 
 if shutil.which("ros2") is None:
-    pytest.skip("ROS 2 is not sourced: source /opt/ros/jazzy/setup.bash", allow_module_level=True)
+    pytest.skip("ROS 2 is not sourced: install ROS 2 Jazzy and '. /opt/ros/jazzy/setup.bash'", allow_module_level=True)
 
 GRAPH_AGENT = "micro_ros_agent"  # it adds boards to the list of nodes of ROS 2
 IMPLEMENTATIONS = ["rmw_cyclonedds_cpp", "rmw_fastrtps_cpp"]

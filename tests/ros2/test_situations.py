@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("tests.ros2.packages", exc_type=ImportError)
 
-from epg.simulate.scenario import Profile, ProfilePart
+from epg.runs.scenario import Profile, ProfilePart
 from tests.ros2.build import Build
 from tests.ros2.correlation import errors, fine_lag, lag
 from tests.ros2.network import Network

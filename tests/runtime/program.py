@@ -39,14 +39,18 @@ def compile_program(
 
 
 def compile_objects(
-    folder: Path, sources: Sequence[Path], *, options: Sequence[str] = ("-O1", *ADDRESS_SANITIZER)
+    folder: Path,
+    sources: Sequence[Path],
+    *,
+    options: Sequence[str] = ("-O1", *ADDRESS_SANITIZER),
+    includes: Sequence[Path] = (),
 ) -> list[Path]:
-    """Compiles each of ``sources``, which have different names, into an object in ``folder``, for several programs."""
+    """Compiles each of ``sources`` into an object in ``folder``, for several programs."""
     folder.mkdir()
-    command = [*_compiler(options, (), ()), "-c", "-pthread"]
+    command = [*_compiler(options, (), includes), "-c", "-pthread"]
 
     def compile_one(source: Path) -> Path:
-        output = folder / f"{source.stem}.o"
+        output = folder / f"{source.parent.name}_{source.stem}.o"
         _run_compiler([*command, str(source), "-o", str(output)])
         return output
 

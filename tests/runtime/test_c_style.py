@@ -3,18 +3,33 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import subprocess
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
 
+from tests.checkout import listed
+
 from .program import COMPONENTS, ROOT, RUNTIME, SOURCES, WARNINGS, compile_program, component_sources, runtime_sources
 
+CONSOLE = ROOT / "targets" / "middlewares" / "console"
 DRIVERS = sorted(COMPONENTS.glob("*/*.[ch]"))
 HEADERS = sorted((RUNTIME / "include").rglob("*.h"))
-FILES = [*HEADERS, *sorted((RUNTIME / "src").glob("*/*")), *DRIVERS, *sorted(SOURCES.iterdir())]
+FORMATTED = re.compile(
+    r"(targets|examples/pico_quadrature)/.*\.[ch]$|tests/.*/(c|programs?|rom|mps2)/[^/]*\.(c|h|cpp)$"
+)
+
+
+INCLUDES = [
+    (path, name)
+    for path in sorted((ROOT / "targets").rglob("*.[ch]"))
+    for name in re.findall(r'^ *# *include "(.+)"', path.read_text(encoding="utf-8"), re.MULTILINE)
+]
+"""Each file of ``targets``, with each name that it includes in quotation marks."""
 
 
 def compile_only(compiler: str, source: Path, output: Path, *options: str) -> None:
@@ -47,31 +62,32 @@ def test_runtime_has_no_warnings_at_any_optimisation(source: Path, optimise: str
     compile_only("gcc", source, tmp_path / "object.o", "-std=c11", optimise)
 
 
-def test_runtime_needs_no_heap_and_no_library_but_string_h(tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def symbols(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[str, str]]:
+    """The letter and the name of each symbol of the runtime, as nm prints them.
+
+    Position-independent code would have constants with addresses in .data.rel.ro, which nm lists as data.
+    """
+    folder = tmp_path_factory.mktemp("objects")
+    objects = [str(folder / f"{source.stem}.o") for source in runtime_sources()]
+    for source, output in zip(runtime_sources(), objects, strict=True):
+        compile_only("gcc", source, Path(output), "-std=c11", "-Os", "-fno-stack-protector", "-fno-pie")
+    lines = subprocess.run(["nm", *objects], capture_output=True, text=True, check=True).stdout.splitlines()
+    return [(words[-2], words[-1]) for line in lines if (words := line.split())[1:]]
+
+
+def test_runtime_needs_no_heap_and_no_library_but_string_h(symbols: list[tuple[str, str]]) -> None:
     """The linker must only add the port layer, and functions that copy, clear and compare bytes."""
-    undefined: set[str] = set()
-    defined: set[str] = set()
-    for source in runtime_sources():
-        output = tmp_path / f"{source.stem}.o"
-        compile_only("gcc", source, output, "-std=c11", "-Os", "-fno-stack-protector")
-        for line in subprocess.run(["nm", str(output)], capture_output=True, text=True, check=True).stdout.splitlines():
-            letter, name = line.split()[-2:]
-            (undefined if letter == "U" else defined).add(name)
-    port = {f"epg_port_{name}" for name in ("time_ns", "wait_until", "serial", "store_read", "store_write")}
+    undefined = {name for letter, name in symbols if letter == "U"}
+    defined = {name for letter, name in symbols if letter != "U"}
+    port = {f"epg_port_{name}" for name in ("time_ns", "wait_until", "serial", "boot_id", "store_read", "store_write")}
     text = {"memcmp", "memcpy", "memmove", "memset", "strchr", "strcmp", "strlen", "strncmp", "strrchr", "strstr"}
     assert undefined - defined <= {*text, *port, "_GLOBAL_OFFSET_TABLE_"}
 
 
-def test_runtime_has_no_state_of_its_own(tmp_path: Path) -> None:
-    """The caller owns all state: .data and .bss are empty, so that several targets can be in one image.
-
-    Position-independent code would have constants with addresses in .data.rel.ro, which nm lists as data.
-    """
-    for source in runtime_sources():
-        output = tmp_path / f"{source.stem}.o"
-        compile_only("gcc", source, output, "-std=c11", "-Os", "-fno-pie")
-        symbols = subprocess.run(["nm", str(output)], capture_output=True, text=True, check=True).stdout
-        assert not [line for line in symbols.splitlines() if line.split()[-2] in "bBdDcC"], symbols
+def test_runtime_has_no_state_of_its_own(symbols: list[tuple[str, str]]) -> None:
+    """The caller owns all state: .data and .bss are empty, so that several targets can be in one image."""
+    assert [name for letter, name in symbols if letter in "bBdDcC"] == []
 
 
 def test_drivers_work_with_fast_math(tmp_path: Path) -> None:
@@ -90,14 +106,32 @@ def test_drivers_work_with_fast_math(tmp_path: Path) -> None:
         assert subprocess.run([str(program), name], check=False).returncode == 0
 
 
-@pytest.mark.skipif(shutil.which("cppcheck") is None, reason="cppcheck is not installed: apt install cppcheck")
+@pytest.mark.skipif(shutil.which("cppcheck") is None, reason="cppcheck is not installed: sudo apt install cppcheck")
 def test_cppcheck_finds_nothing() -> None:
     drivers = [d for d in DRIVERS if d.suffix == ".c" or not d.with_suffix(".c").exists()]  # a header with its source
     command = ["cppcheck", "--std=c11", "--language=c", "--enable=warning,style,performance,portability"]
     command += ["--inline-suppr", "--error-exitcode=1", "--quiet", "--suppress=missingIncludeSystem"]
-    command += [f"-I{RUNTIME / 'include'}", *map(str, runtime_sources()), *map(str, drivers)]
+    command += [f"-I{RUNTIME / 'include'}", *map(str, [*runtime_sources(), *drivers, *sorted(CONSOLE.glob("*.c"))])]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_parts_include_each_other_by_their_include_folders() -> None:
+    """A name may lead to the folder above; a header of another part is found by a folder that CMake gives."""
+    assert [f"{path}: {name}" for path, name in INCLUDES if name.startswith("../../")] == []
+
+
+def test_no_circle_of_includes() -> None:
+    """A header and the source of the same name beside it are one.  An exception of graphlib names a circle."""
+    files = {path.as_posix(): path.with_suffix("") for path in (ROOT / "targets").rglob("*.[ch]")}
+    graph: dict[Path, set[Path]] = {unit: set() for unit in files.values()}
+    for path, name in INCLUDES:
+        beside = os.path.normpath(path.parent / name)
+        ends = (f"/include/{name}", f"/src/{name}")
+        found = {files[beside]} if beside in files else {unit for file, unit in files.items() if file.endswith(ends)}
+        graph[path.with_suffix("")] |= found - {path.with_suffix("")}
+    assert sum(map(len, graph.values())) > len(graph)
+    TopologicalSorter(graph).prepare()
 
 
 def clang_format_version() -> int:
@@ -110,9 +144,10 @@ def clang_format_version() -> int:
 
 
 @pytest.mark.skipif(
-    clang_format_version() != 14, reason="clang-format 14 is not installed: apt install clang-format-14"
+    clang_format_version() != 14, reason="clang-format 14 is not installed: sudo apt install clang-format-14"
 )
 def test_files_are_formatted() -> None:
-    command = ["clang-format", f"--style=file:{ROOT / '.clang-format'}", "--dry-run", "--Werror", *map(str, FILES)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    """All C of targets, and that of their tests."""
+    command = ["clang-format", f"--style=file:{ROOT / '.clang-format'}", "--dry-run", "--Werror"]
+    done = subprocess.run([*command, *filter(FORMATTED.match, listed())], cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

@@ -50,9 +50,9 @@ def test_in_c(program_of: Callable[[Path], Path], source: Path, name: str) -> No
     assert done.returncode == 0, done.stderr
 
 
-def test_a_test_that_is_not_entered_fails(tmp_path: Path) -> None:
+def test_a_test_that_does_not_exist_fails(tmp_path: Path) -> None:
     source = tmp_path / "none.c"
-    source.write_text('#include "check.h"\nTEST(entered)\n{\n    CHECK(1);\n}\nRUN(ENTRY(entered))\n')
+    source.write_text('#include "check.h"\nTEST(entered)\n{\n    CHECK(1);\n}\nRUN()\n')
     program = compile_program(tmp_path / "none", [source])
     assert run_program([program, "entered"]).returncode == 0
     assert run_program([program, "forgotten"]).returncode == 2
@@ -60,7 +60,7 @@ def test_a_test_that_is_not_entered_fails(tmp_path: Path) -> None:
 
 def test_a_check_that_does_not_hold_fails(tmp_path: Path) -> None:
     source = tmp_path / "wrong.c"
-    source.write_text('#include "check.h"\nTEST(wrong)\n{\n    CHECK_EQUAL(1, 2);\n}\nRUN(ENTRY(wrong))\n')
+    source.write_text('#include "check.h"\nTEST(wrong)\n{\n    CHECK_EQUAL(1, 2);\n}\nRUN()\n')
     program = compile_program(tmp_path / "wrong", [source])
     done = run_program([program, "wrong"])
     assert done.returncode == 1

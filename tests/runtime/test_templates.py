@@ -12,13 +12,13 @@ from typing import Any
 
 import pytest
 
-from epg.catalog.catalog import Catalog, load_catalog
-from epg.check.compose import typed_parameters
-from epg.check.messages import with_messages
-from epg.diagnostics import Diagnostics
-from epg.documents.yaml_file import parse_yaml
-from epg.emit.template import environment
-from epg.emit.text import Code, identifier
+from epg.generator.catalog.catalog import Catalog, load_catalog
+from epg.generator.check.compose import typed_parameters
+from epg.generator.check.messages import with_messages
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.yaml_file import parse_yaml
+from epg.generator.emit.template import environment
+from epg.generator.emit.text import Code, identifier
 
 from .program import (
     COMPONENTS,
@@ -189,7 +189,7 @@ def catalog() -> Catalog:
 
 
 class Renderer:
-    """The macros of a kind for one component, as :mod:`epg.emit.application` calls them."""
+    """The macros of a kind for one component, as :mod:`epg.generator.emit.application` calls them."""
 
     def __init__(self, catalog: Catalog, component: Component) -> None:
         diagnostics = Diagnostics()
@@ -290,7 +290,7 @@ def program(catalog: Catalog, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("templates")
     renderers = [Renderer(catalog, component) for component in COMPONENTS_TRIED]
     (folder / "generated.h").write_text(header(renderers))
-    port = [HOST / "src" / f"{name}.c" for name in ("port", "clock", "monotonic", "serial", "store")]
+    port = [HOST / "src" / "port" / f"{name}.c" for name in ("port", "clock", "monotonic", "serial", "store")]
     sources = [HARNESS, *port, *runtime_sources(), *(s for s in component_sources() if s.stem != "uart")]
     return compile_program(folder / "templates", sources, includes=[folder, HOST / "include", HOST / "src"])
 

@@ -8,24 +8,16 @@ import subprocess
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+from tests.platforms.host.program import CONSOLE, HOST, PROGRAMS, RUNTIME, platform_sources
 
 
 def compile_motor(output: Path, *defines: str) -> Path:
     """The motor of the host platform's own tests, compiled with ``defines``."""
     compiler = shutil.which("gcc") or shutil.which("cc")
     assert compiler is not None, "a C compiler is needed"
-    host, runtime = ROOT / "targets" / "platforms" / "host", ROOT / "targets" / "runtime"
-    folders = (
-        runtime / "src/control",
-        runtime / "src/communication",
-        host / "src",
-        host / "src" / ("linux" if sys.platform == "linux" else "elsewhere"),
-    )
-    sources = [source for folder in folders for source in sorted(folder.glob("*.c"))]
-    sources.append(ROOT / "tests" / "platforms" / "host" / "programs" / "motor.c")
+    sources = [*platform_sources(system="linux" if sys.platform == "linux" else "elsewhere"), PROGRAMS / "motor.c"]
     command = [compiler, "-std=c11", "-O1", "-DEPG_HOST_TARGET=epg_host_application"]
     command += [f"-D{define}" for define in defines]
-    command += [f"-I{folder}" for folder in (runtime / "include", host / "include", host / "src")]
+    command += [f"-I{folder}" for folder in (RUNTIME / "include", HOST / "include", HOST / "src", CONSOLE)]
     subprocess.run([*command, *map(str, sources), "-pthread", "-lm", "-o", str(output)], check=True)
     return output

@@ -46,7 +46,7 @@ EXPECTED = [(0.0, 1), (1.0, 0), (1.7, 1), (2.5, 0)]
 
 def test_a_scenario_forces_what_the_plant_drives(tmp_path: Path) -> None:
     if not shutil.which("cmake"):
-        pytest.skip("cmake is missing: apt install cmake")
+        pytest.skip("CMake is not installed: sudo apt install cmake")
     result = simulate(build(tmp_path / "build"), CART / "emergency_stop.yaml", tmp_path / "out")
     assert result.passed, result.ending
     assert enabled(tmp_path / "out" / "trace.csv") == EXPECTED

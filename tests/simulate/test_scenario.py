@@ -11,11 +11,11 @@ from pathlib import Path
 import pytest
 
 from epg.cli.report import format_diagnostics
-from epg.diagnostics import Diagnostics
-from epg.simulate.interface import check_names, interface_of
+from epg.generator.diagnostics import Diagnostics
+from epg.runs.interface import check_names, interface_of
+from epg.runs.scenario import Scenario
+from epg.runs.setpoint_file import setpoint_rows, write_setpoints
 from epg.simulate.load_scenario import load_scenario
-from epg.simulate.scenario import Scenario
-from epg.simulate.setpoints import setpoint_rows, write_setpoints
 
 HERE = Path(__file__).resolve().parent
 EXAMPLES = HERE.parents[1] / "examples"

@@ -15,9 +15,9 @@ import pytest
 import yaml
 
 from epg.cli.report import format_diagnostics
-from epg.diagnostics import UserError
+from epg.generator.diagnostics import UserError
+from epg.runs import interface as interface_module
 from epg.simulate import format_table, simulate
-from epg.simulate import interface as interface_module
 
 from .motor import compile_motor
 

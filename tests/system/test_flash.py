@@ -19,14 +19,14 @@ from pathlib import Path
 import pytest
 
 from epg.cli.main import main
-from epg.diagnostics import Diagnostics
-from epg.emit.cmake import PathNames
-from epg.emit.outputs import application_outputs
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.emit.cmake import PathNames
+from epg.generator.emit.outputs import application_outputs
+from epg.generator.tools import usb_boards
 from epg.system import flash
 from epg.system.check_system import check_system
 from epg.system.images import images_of
 from epg.system.load_system import load_system
-from epg.tools import usb_boards
 
 ROOT = Path(__file__).resolve().parents[2]
 FIRST, SECOND = "E6614103E7452D2F", "E66118604B5A7C31"

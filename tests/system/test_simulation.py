@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from epg.cli.main import main
-from epg.diagnostics import UserError
+from epg.generator.diagnostics import UserError
 from epg.simulate import format_table, simulate, simulate_system
 from tests.cmake.project import ROOT, Project
 
@@ -34,7 +34,14 @@ targets:
     model: model
     bindings: jiwy.bindings.yaml
     clock: {start: 0.3 ms, drift: 200}
-  far: {tcf: rpi_pico2_zephyr_jiwy, model: model, bindings: jiwy.bindings.yaml, count: 2, clock: {drift: -100}}
+    set: {components: {pan_subscriber: {limits: [-4, 4]}, tilt_subscriber: {limits: [-4, 4]}}} # also while it homes
+  far:
+    tcf: rpi_pico2_zephyr_jiwy
+    model: model
+    bindings: jiwy.bindings.yaml
+    count: 2
+    clock: {drift: -100}
+    set: {components: {pan_subscriber: {limits: [-4, 4]}, tilt_subscriber: {limits: [-4, 4]}}}
   drive: {tcf: rpi_pico_bare_metal_relbot, model: relbot/model, bindings: relbot/relbot.bindings.yaml}
 connections:
   - {from: leader/pan_publisher, to: near/pan_subscriber, delay: 2 ms}

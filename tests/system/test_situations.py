@@ -11,7 +11,7 @@ import pytest
 pytest.importorskip("numpy", reason="numpy is not installed: pip install numpy")
 
 from epg.cli.build_simulation import build_simulation
-from epg.diagnostics import Diagnostics
+from epg.generator.diagnostics import Diagnostics
 from tests.system.situations import ROOT, ROWS, SITUATIONS, simulated_lags
 
 PAGE = ROOT / "docs" / "benchmarks.md"

@@ -12,12 +12,12 @@ from pathlib import Path
 import pytest
 
 from epg.cli.main import main
-from epg.diagnostics import Diagnostics
-from epg.emit.cmake import PathNames
-from epg.emit.outputs import application_outputs
-from epg.project import load_application
-from epg.resolve.application import Step
-from epg.source import Span
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.emit.cmake import PathNames
+from epg.generator.emit.outputs import application_outputs
+from epg.generator.project import load_application
+from epg.generator.resolve.application import ConversionStep
+from epg.generator.source import Span
 from epg.system.check_system import CheckedSystem, check_system
 from epg.system.load_system import load_system
 from epg.system.loops import loops_of
@@ -160,9 +160,9 @@ def test_loops(pairs: str, loops: list[str]) -> None:
 
 
 def test_ranges_of_wires() -> None:
-    limited = Step(scale=2, offset=1.0, limits=(-5.0, 7.0))
-    assert sent_range((limited, Step(scale=-10))) == (-70.0, 50.0)
-    assert received_range((Step(scale=-8), limited)) == (-0.375, 0.375)
+    limited = ConversionStep(scale=2, offset=1.0, limits=(-5.0, 7.0))
+    assert sent_range((limited, ConversionStep(scale=-10))) == (-70.0, 50.0)
+    assert received_range((ConversionStep(scale=-8), limited)) == (-0.375, 0.375)
     assert sent_range(()) == received_range(()) == (float("-inf"), float("inf"))
 
 

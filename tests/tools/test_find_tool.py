@@ -13,10 +13,10 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from epg.diagnostics import Diagnostics
-from epg.tools import find_tool as module
-from epg.tools.find_tool import Surroundings, find_tool, read_cmake_cache
-from epg.tools.tools import Tool, load_tools
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.tools import find_tool as module
+from epg.generator.tools.find_tool import Surroundings, find_tool, read_cmake_cache
+from epg.generator.tools.tools import Tool, load_tools
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 TABLE = load_tools([ROOT / "targets"], Diagnostics())

@@ -14,11 +14,11 @@ from pathlib import Path
 
 import pytest
 
-from epg.bootstrap import cache_folder
-from epg.diagnostics import Diagnostics
-from epg.tools.find_tool import Finding, Surroundings, find_tool
-from epg.tools.remedy import command_for
-from epg.tools.tools import load_tools
+from epg.generator.bootstrap import cache_folder
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.tools.find_tool import Finding, Surroundings, find_tool
+from epg.generator.tools.remedy import command_for
+from epg.generator.tools.tools import load_tools
 
 ROOT = Path(__file__).resolve().parents[2]
 FILES = [f"cmake/EPG{name}.cmake" for name in ("Python", "Sdk", "Versions", "Missing", "Fetch")]
@@ -44,7 +44,7 @@ COMPILER = {
     "places": ["~/compilers/*", "~/more/*"],
 }
 
-pytestmark = pytest.mark.skipif(not shutil.which("cmake"), reason="cmake is missing: apt install cmake")
+pytestmark = pytest.mark.skipif(not shutil.which("cmake"), reason="CMake is not installed: sudo apt install cmake")
 
 
 @dataclass(frozen=True)

@@ -6,17 +6,17 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from tests.twenty_sim.generate import FOLDER
+from tests.waiting import until
 
 NAME = "open_in_epg.cmd"
 needs_wine = pytest.mark.skipif(
-    shutil.which("wine") is None, reason="Wine is not installed: apt-get install --no-install-recommends wine wine64"
+    shutil.which("wine") is None, reason="Wine is not installed: sudo apt install --no-install-recommends wine wine64"
 )
 
 
@@ -85,9 +85,7 @@ def test_epg_is_started_for_the_folder_of_the_export(computer: Computer) -> None
     assert computer.run("window").returncode == 0
     assert computer.noted()[1:] == ['epg exported "." --connect']  # in a window that the user sees
     assert computer.run().returncode == 0  # this opens a window and does not wait for it
-    end = time.monotonic() + 60
-    while len(computer.noted()) < 3 and time.monotonic() < end:
-        time.sleep(0.2)
+    until(lambda: len(computer.noted()) > 2, seconds=60)
     assert computer.noted()[2:] == ['epg exported "." --connect']
 
 

@@ -23,7 +23,7 @@ JIWY = ROOT / "examples/jiwy/model"
 RELBOT = ROOT / "examples/relbot/model"
 COUNTS = (2, 2)  # inputs and outputs of the tests' small model
 
-pytestmark = pytest.mark.skipif(not HAVE_COMPILER, reason="gcc and g++ are not installed: apt-get install gcc g++")
+pytestmark = pytest.mark.skipif(not HAVE_COMPILER, reason="gcc and g++ are not installed: sudo apt install gcc g++")
 
 
 def c_function(export: Export, work: Path) -> str:
@@ -139,7 +139,7 @@ def test_single_precision_is_near(method: str, tmp_path: Path) -> None:
     worst = max(abs(a - b) for one, other in zip(near, exact, strict=True) for a, b in zip(one, other, strict=True))
     assert 0 < worst < 1e-4 * largest  # 24 bits, 300 steps
     assert "typedef float Servo_real;" in (single / "Servo.h").read_text()
-    assert loaded(single).details.real == "float"  # type: ignore[attr-defined]
+    assert loaded(single).code.real == "float"  # type: ignore[attr-defined]
     assert len(run_wrapper(build(loaded(single), "pan", tmp_path), 20).splitlines()) == 22
 
 

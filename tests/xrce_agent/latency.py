@@ -26,6 +26,8 @@ class Step:
     just begun but had not read its setpoints yet."""
     in_cycle: float
     """From the tick (on the host: the start of the cycle) to the output."""
+    after_tick: float
+    """From the tick to the output.  On a computer that is late, the cycle starts after its tick."""
 
 
 def executable(delay: int, target: str) -> str:
@@ -37,13 +39,18 @@ def duty(number: int) -> float:
     return 0.1 + 0.8 * (number * 0.38196601125 % 1.0)
 
 
-def parse(path: Path, sent: list[float]) -> list[Step]:
-    """The records that the host's program wrote, for steps sent at these times of the monotonic clock."""
+def parse(path: Path, sent: list[float], cycles: list[dict[str, float]]) -> list[Step]:
+    """The records that the host's program wrote, for steps sent at these times of the monotonic clock.
+
+    ``cycles`` is the program's trace, which has the tick of each cycle, and how late it started.
+    """
     begun = {duty(number): time for number, time in enumerate(sent)}
+    lines = [line.split() for line in path.read_text(encoding="utf-8").splitlines()]
+    records = [(float(value), [int(number) for number in numbers]) for value, *numbers in lines]
+    traced = [(1e-9 * numbers[2], cycles[numbers[3] - 1]) for _, numbers in records]
+    start = min(begin - cycle["time"] - cycle["lateness"] for begin, cycle in traced)
     steps = []
-    for line in path.read_text(encoding="utf-8").splitlines():
-        words = line.split()
-        value, numbers = float(words[0]), [int(word) for word in words[1:]]
+    for value, numbers in records:
         if value not in begun:
             continue
         arrival, arrival_cycle, begin, cycle, written = numbers
@@ -51,5 +58,7 @@ def parse(path: Path, sent: list[float]) -> list[Step]:
         if 1e-9 * arrival < begun[value]:
             arrival, arrival_cycle = begin, cycle
         whole = 1e-9 * written - begun[value]
-        steps.append(Step(whole, 1e-9 * (written - arrival), cycle - arrival_cycle, 1e-9 * (written - begin)))
+        after_tick = 1e-9 * written - start - cycles[cycle - 1]["time"]
+        in_cycle = 1e-9 * (written - begin)
+        steps.append(Step(whole, 1e-9 * (written - arrival), cycle - arrival_cycle, in_cycle, after_tick))
     return steps

@@ -19,7 +19,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from epg.bootstrap import cache_folder
+from epg.generator.bootstrap import cache_folder
 from tests.emulator.toolchain import ROOT, locked
 
 from .workspace import Workspace

@@ -7,7 +7,7 @@ import re
 from functools import partial
 from pathlib import Path
 
-from epg.bootstrap import LOCKS
+from epg.generator.bootstrap import LOCKS
 from tests.emulator.toolchain import ROOT, arm_gcc, skip_if_missing
 
 from .workspace import build, workspace

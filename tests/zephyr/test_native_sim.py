@@ -19,6 +19,7 @@ import pytest
 from epg.simulate import simulate
 from tests.emulator.toolchain import ROOT, Missing, arm_gcc, skip_if_missing
 from tests.middlewares.client import Host, Lines, values
+from tests.waiting import until
 from tests.xrce_agent import Agent, PtyLink, UdpLink, float64
 from tests.xrce_agent.bare import libraries
 from tests.xrce_agent.jiwy import follow
@@ -71,7 +72,7 @@ def host(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
     def needs() -> None:
         if not shutil.which("ninja"):
-            raise Missing("ninja is missing: apt install ninja-build")
+            raise Missing("Ninja is not installed: sudo apt install ninja-build")
 
     skip_if_missing(libraries, needs)
     folder = tmp_path_factory.mktemp("host")
@@ -226,7 +227,7 @@ def test_what_is_saved_is_there_at_the_next_start(image: Path, tmp_path: Path) -
         assert console.ask("get Pan\\PID\\kp") == ["parameter Pan\\PID\\kp=0.1 generated=2.6", "ok get"]
     with Host(image, "--quiet") as console:
         console.ask("disable")
-        assert console.ask("save") == ["error save this target cannot store parameters"]
+        assert console.ask("save") == ["error save this program was started without --store FILE"]
 
 
 def test_console_on_a_terminal_and_an_interrupt(image: Path, tmp_path: Path) -> None:
@@ -234,9 +235,7 @@ def test_console_on_a_terminal_and_an_interrupt(image: Path, tmp_path: Path) -> 
     command = [str(image), "--realtime", "--quiet", "--duration=60", f"--console-pty={name}", f"--trace={trace}"]
     with start(command) as process:
         try:
-            end = time.monotonic() + PATIENCE
-            while not name.exists() and time.monotonic() < end:
-                time.sleep(0.02)
+            until(name.exists)
             file = os.open(name, os.O_RDWR | os.O_NOCTTY)
             console = Lines(file, file)
             console.until("ready ")

@@ -23,7 +23,7 @@ END = re.compile(r"PROJECT EXECUTION (\w+)")
 def qemu() -> str:
     program = shutil.which("qemu-system-arm")
     if program is None:
-        raise Missing("qemu-system-arm is not installed: apt install qemu-system-arm")
+        raise Missing("qemu-system-arm is not installed: sudo apt install qemu-system-arm")
     return program
 
 

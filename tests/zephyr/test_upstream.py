@@ -26,7 +26,7 @@ def zephyr() -> Path:
 def patch() -> str:
     program = shutil.which("patch")
     if program is None:
-        raise Missing("patch is not installed: apt install patch")
+        raise Missing("patch is not installed: sudo apt install patch")
     return program
 
 
@@ -42,7 +42,7 @@ def test_checkpatch() -> None:
     skip_if_missing(zephyr)
     program = shutil.which("perl")
     if program is None:
-        pytest.skip("perl, which checkpatch needs, is not installed: apt install perl")
+        pytest.skip("perl, which checkpatch needs, is not installed: sudo apt install perl")
     command = [program, str(zephyr() / "scripts" / "checkpatch.pl"), "--no-tree", "--no-signoff", "-q", str(PATCH)]
     done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=zephyr())
     assert done.returncode == 0, done.stdout + done.stderr

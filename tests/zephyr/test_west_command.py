@@ -11,13 +11,13 @@ import select
 import shutil
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
 
 from tests.connect.page import Page
 from tests.emulator.toolchain import ROOT, skip_if_missing
+from tests.waiting import until
 
 from .workspace import workspace
 
@@ -123,12 +123,14 @@ class Terminal:
         self.text = ""
 
     def read_until(self, pattern: str, seconds: float = 60) -> re.Match[str]:
-        end = time.monotonic() + seconds
-        while not (match := re.search(pattern, self.text)):
-            assert time.monotonic() < end, self.text
+        def match() -> re.Match[str] | None:
             if select.select([self.screen], [], [], 0.2)[0]:
                 self.text += os.read(self.screen, 4096).decode(errors="replace")
-        return match
+            return re.search(pattern, self.text)
+
+        found = re.search(pattern, self.text) or until(match, lambda: self.text, seconds, pause=0.0)
+        assert found is not None
+        return found
 
     def type(self, text: str) -> None:
         os.write(self.screen, text.encode())

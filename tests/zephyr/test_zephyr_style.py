@@ -29,7 +29,7 @@ def zephyr() -> Path:
 def perl() -> str:
     program = shutil.which("perl")
     if program is None:
-        raise Missing("perl, which checkpatch needs, is not installed: apt install perl")
+        raise Missing("perl, which checkpatch needs, is not installed: sudo apt install perl")
     return program
 
 

@@ -16,7 +16,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from epg.bootstrap import cache_folder
+from epg.generator.bootstrap import cache_folder
 from tests.emulator.toolchain import ROOT, Missing, arm_gcc, locked, tool
 
 NATIVE = "native_sim/native/64"
@@ -73,7 +73,7 @@ def c_library() -> dict[str, str]:
         return {}
     command = [compiler, "-print-file-name=picolibc.specs"]
     if not Path(subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()).is_absolute():
-        raise Missing("a C library that Zephyr can use is not installed: apt install picolibc-arm-none-eabi")
+        raise Missing("a C library that Zephyr can use is not installed: sudo apt install picolibc-arm-none-eabi")
     return {"TOOLCHAIN_HAS_PICOLIBC": "ON"}
 
 
@@ -98,7 +98,7 @@ def workspace(*boards: str) -> Workspace:
         elif not name.startswith("cmsis"):
             raise Missing(f"Zephyr's module hal_{name} is not in the workspace: cd {base.parent} && west update")
     if shutil.which("dtc") is None:
-        raise Missing("Zephyr's build needs dtc: apt install device-tree-compiler")
+        raise Missing("Zephyr's build needs dtc: sudo apt install device-tree-compiler")
     return Workspace(base, _python(base), (*modules, ROOT))
 
 

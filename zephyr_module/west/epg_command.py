@@ -4,7 +4,7 @@
 """``west epg ...``: runs the command line of the EPG in the west workspace.
 
 It runs with the same Python interpreter as west.  EPG installs packages that this interpreter lacks into its own cache
-(``epg/bootstrap.py``).
+(``epg/generator/bootstrap.py``).
 """
 
 import argparse

@@ -23,11 +23,11 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from epg.bootstrap import cache_folder
-from epg.check.configuration import Configuration
 from epg.connect.build.plan import make_plan
 from epg.connect.projects import Job
-from epg.dataclass import dataclass
+from epg.generator.bootstrap import cache_folder
+from epg.generator.check.configuration import Configuration
+from epg.generator.dataclass import dataclass
 
 FILE = "agreed-builds"
 """A file in EPG's cache, with one line for each :attr:`Question.key` that the user has agreed to."""

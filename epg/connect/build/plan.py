@@ -14,17 +14,16 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
-from epg.catalog.hardware import Target
-from epg.check.configuration import Configuration
-from epg.connect.build.messages import Message
-from epg.connect.build.tools import ALWAYS, find_tools, lack_of
+from epg.connect.build.build_messages import BuildMessage
+from epg.connect.build.build_tools import ALWAYS, find_tools, lack_of
 from epg.connect.build_folders import CACHE, USUAL
 from epg.connect.projects import Job
-from epg.data import data_folder
-from epg.dataclass import dataclass
-from epg.diagnostics import Diagnostics
-from epg.tools.find_tool import read_cmake_cache
-from epg.tools.tools import Tool
+from epg.generator.check.configuration import Configuration
+from epg.generator.data import data_folder
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.tools.find_tool import read_cmake_cache
+from epg.generator.tools.tools import Tool
 
 NINJA = "Ninja"
 
@@ -53,7 +52,7 @@ class Plan:
     steps: tuple[Command, ...]
     environment: Mapping[str, str]
     cache: Mapping[str, str]
-    missing: tuple[Message, ...] = ()
+    missing: tuple[BuildMessage, ...] = ()
     can_try: bool = False
     downloads: tuple[Tool, ...] = ()
     build_program: str = ""
@@ -71,10 +70,9 @@ def make_plan(job: Job, configuration: Configuration | None, *, run: bool = True
     """
     source = Path(os.path.abspath(job.source_dir or job.request.beside))
     build = Path(os.path.abspath(job.build_dir or source / USUAL))
-    file = build / CACHE
-    cache = read_cmake_cache(file, Diagnostics()) if file.is_file() else {}
     if job.simulated:
         configuration = None
+    cache = read_cmake_cache(build / CACHE, Diagnostics())
     outdated = configuration is not None and _is_of_another_target(job, configuration, source, build, cache)
     cache = {} if outdated else cache
     west = job.built_by == "west"
@@ -83,26 +81,10 @@ def make_plan(job: Job, configuration: Configuration | None, *, run: bool = True
     lack = lack_of(job, configuration, findings, build, cache, run=run)
     if lack.certain or (lack.likely and not anyway):
         return Plan(source, build, (), {}, cache, (*lack.certain, *lack.likely), can_try=not lack.certain)
-    target = configuration.target if configuration is not None else None
     programs = {finding.tool.name: str(finding.path) for finding in findings}
-    if cache:
-        home = cache.get("CMAKE_HOME_DIRECTORY", "") if west else ""  # with sysbuild: its folder, not the application's
-        configure = Command("configure", (programs["cmake"], "-S", home or str(source), "-B", str(build)), source)
-    elif west:
-        configure = _by_west(job, target, source, build, programs)
-    else:
-        configure = Command("configure", _first(job, source, build, programs), source)
-    build_command = (programs["cmake"], "--build", str(build), *_parallel(cache, programs))
-    fresh = (
-        programs["cmake"],
-        "-E",
-        "rm",
-        "-rf",
-        str(build / CACHE),
-        str(build / "CMakeFiles"),
-    )  # as cmake --fresh does
-    first = (Command("configure", fresh, source),) if outdated else ()
-    steps = (*first, configure, Command("build", build_command, source))
+    folders = _Folders(source, build, cache, programs)
+    configure = folders.again(west) if cache else folders.first(job, configuration)
+    steps = (*([folders.emptied()] if outdated else []), configure, folders.built())
     environment = _environment(os.environ, cache, west=west)
     build_program = cache.get("CMAKE_MAKE_PROGRAM") or programs["build_program"]
     return Plan(source, build, steps, environment, cache, downloads=lack.downloads, build_program=build_program)
@@ -122,36 +104,66 @@ def _is_of_another_target(
         return False  # nothing was generated yet
 
 
-def _first(job: Job, source: Path, build: Path, programs: Mapping[str, str]) -> tuple[str, ...]:
-    """The command of the first configuration: with the preset for this folder, if any, and with Ninja if found."""
-    preset = ("--preset", job.preset) if job.preset else ("-S", str(source))
-    ninja = Path(programs["build_program"])
-    generator: tuple[str, ...] = ()
-    if "ninja" in ninja.name.lower() and not os.environ.get("CMAKE_GENERATOR"):
-        generator = ("-G", NINJA)
-        if shutil.which(ninja.name) is None:
-            generator += (f"-DCMAKE_MAKE_PROGRAM={ninja.as_posix()}",)
-    return (programs["cmake"], *preset, "-B", str(build), *generator)
+@dataclass(frozen=True)
+class _Folders:
+    """The commands for the folders of a project.  ``programs`` are the paths of the tools that start the build."""
 
+    source: Path
+    build: Path
+    cache: Mapping[str, str]
+    programs: Mapping[str, str]
 
-def _by_west(job: Job, target: Target | None, source: Path, build: Path, programs: Mapping[str, str]) -> Command:
-    """The step that configures with ``west build``, which finds Zephyr.
+    def emptied(self) -> Command:
+        """Removes the configuration of the build folder, as ``cmake --fresh`` does."""
+        files = (str(self.build / CACHE), str(self.build / "CMakeFiles"))
+        return Command("configure", (self.programs["cmake"], "-E", "rm", "-rf", *files), self.source)
 
-    west must run in a workspace.  If the project is not in one, it runs in Zephyr's folder.
-    """
-    board = job.board or (target.board.sdks.get(target.platform.sdk, "") if target is not None else "")
-    around = [folder for folder in (source, *source.parents) if (folder / ".west").is_dir()]
-    folder = source if around else Path(programs["zephyr"])
-    command = [programs["west"], "build", "--cmake-only", "-d", str(build)]
-    return Command("configure", (*command, *(("-b", board) if board else ()), str(source)), folder)
+    def again(self, west: bool) -> Command:
+        """Configures a build folder that was configured before."""
+        home = self.cache.get("CMAKE_HOME_DIRECTORY", "") if west else ""  # with sysbuild: not the application's folder
+        command = (self.programs["cmake"], "-S", home or str(self.source), "-B", str(self.build))
+        return Command("configure", command, self.source)
 
+    def first(self, job: Job, configuration: Configuration | None) -> Command:
+        """Configures for the first time."""
+        if job.built_by != "west":
+            return self._by_cmake(job.preset)
+        target = configuration.target if configuration is not None else None
+        return self._by_west(job.board or (target.board.sdks.get(target.platform.sdk, "") if target else ""))
 
-def _parallel(cache: Mapping[str, str], programs: Mapping[str, str]) -> tuple[str, ...]:
-    """The option for a parallel build.  Make uses one processor by default, Ninja all of them."""
-    generator = cache.get("CMAKE_GENERATOR", "") or (NINJA if "ninja" in Path(programs["build_program"]).name else "")
-    if generator.startswith(NINJA) or os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL"):
-        return ()
-    return ("--parallel", str(os.cpu_count() or 1))
+    def _by_cmake(self, preset: str) -> Command:
+        """Configures with the preset for this folder, if any, and with Ninja if found."""
+        chosen = ("--preset", preset) if preset else ("-S", str(self.source))
+        ninja = Path(self.programs["build_program"])
+        generator: tuple[str, ...] = ()
+        if "ninja" in ninja.name.lower() and not os.environ.get("CMAKE_GENERATOR"):
+            generator = ("-G", NINJA)
+            if shutil.which(ninja.name) is None:
+                generator += (f"-DCMAKE_MAKE_PROGRAM={ninja.as_posix()}",)
+        command = (self.programs["cmake"], *chosen, "-B", str(self.build), *generator)
+        return Command("configure", command, self.source)
+
+    def _by_west(self, board: str) -> Command:
+        """Configures with ``west build``, which finds Zephyr.
+
+        west must run in a workspace.  If the project is not in one, it runs in Zephyr's folder.
+        """
+        around = [folder for folder in (self.source, *self.source.parents) if (folder / ".west").is_dir()]
+        folder = self.source if around else Path(self.programs["zephyr"])
+        command = [self.programs["west"], "build", "--cmake-only", "-d", str(self.build)]
+        return Command("configure", (*command, *(("-b", board) if board else ()), str(self.source)), folder)
+
+    def built(self) -> Command:
+        command = (self.programs["cmake"], "--build", str(self.build), *self._parallel())
+        return Command("build", command, self.source)
+
+    def _parallel(self) -> tuple[str, ...]:
+        """The option for a parallel build.  Make uses one processor by default, Ninja all of them."""
+        is_ninja = "ninja" in Path(self.programs["build_program"]).name
+        generator = self.cache.get("CMAKE_GENERATOR", "") or (NINJA if is_ninja else "")
+        if generator.startswith(NINJA) or os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL"):
+            return ()
+        return ("--parallel", str(os.cpu_count() or 1))
 
 
 _OF_MAKE = ("MAKEFLAGS", "MFLAGS", "MAKELEVEL", "MAKE_TERMOUT", "MAKE_TERMERR")

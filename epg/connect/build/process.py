@@ -126,12 +126,12 @@ def _session(leader: int) -> list[int]:
 
     The leader's process group is not enough: Ninja starts each command in a new process group.
     """
-    found = []
+    members = []
     for entry in Path("/proc").glob("[0-9]*"):
         try:
             fields = (entry / "stat").read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()
         except OSError:
             continue
         if fields[0] != "Z" and fields[3] == str(leader):  # state; session
-            found.append(int(entry.name))
-    return found
+            members.append(int(entry.name))
+    return members

@@ -12,8 +12,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from epg.catalog.platform import Platform
-from epg.dataclass import dataclass
+from epg.generator.catalog.platform import Platform
+from epg.generator.dataclass import dataclass
 
 CLIENT = "client-epg"
 _QUERY = "codemodel-v2"
@@ -39,12 +39,12 @@ def products(build: Path, target: str, platform: Platform | None, executables: S
 
     They are in the platform's order of ``products``: the most useful ones first.  Files that do not exist are left out.
     """
-    found: dict[Path, tuple[int, Made]] = {}
+    ranked: dict[Path, tuple[int, Made]] = {}
     for program in _programs(build, target, executables, platform.program if platform is not None else ""):
         for rank, made in _of_program(program, platform):
             if made.path.is_file():
-                found.setdefault(made.path, (rank, made))
-    return [made for _, made in sorted(found.values(), key=lambda entry: (entry[0], entry[1].path.as_posix()))]
+                ranked.setdefault(made.path, (rank, made))
+    return [made for _, made in sorted(ranked.values(), key=lambda entry: (entry[0], entry[1].path.as_posix()))]
 
 
 def _of_program(program: Path, platform: Platform | None) -> Iterator[tuple[int, Made]]:

@@ -80,7 +80,7 @@ function question(name, action, body) {
 function commands(ask) {
   return [
     h("p", { key: "folder" }, "These commands run in ", h("code", ask.folder), ":"),
-    h("pre", { key: "commands", tabindex: "0", "aria-label": "Commands" }, ask.commands.join("\n")),
+    h("pre.commands", { key: "commands", tabindex: "0", "aria-label": "Commands" }, ask.commands.join("\n")),
     h(
       "p",
       { key: "programs" },

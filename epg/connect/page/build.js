@@ -91,11 +91,8 @@ function product(state, { path, what, runs }) {
 
 // Saves a product on the computer of the browser.
 async function download(path, name) {
-  try {
-    await saveFrom(`api/product?path=${encodeURIComponent(path)}`, name);
-  } catch {
-    change({ refused: { message: `${name} cannot be read.`, hint: "Generate again.", port: null } });
-  }
+  const problem = await saveFrom(`api/product?path=${encodeURIComponent(path)}`, name);
+  if (problem) change({ refused: { ...problem, port: null } });
 }
 
 /** @param {State} state */

@@ -4,7 +4,7 @@
 import { begin, failureText, logPart, messagesPart, outcomePart, running, stepText } from "./activity.js";
 import { drawCurves, legend } from "./curves.js";
 import { h } from "./dom.js";
-import { colour } from "./plots.js";
+import { colour, dash } from "./plots.js";
 import { savePng } from "./save.js";
 import { getJson } from "./server.js";
 import { draw } from "./ui.js";
@@ -12,6 +12,8 @@ import { draw } from "./ui.js";
 /**
  * @typedef {{name: string, rms: number | null, target: (number | null)[], simulation: (number | null)[]}} Compared
  */
+
+const SIMULATED = [1, 3]; // the dashes of simulated signals
 
 let of = null; // the result that was fetched
 let compared = /** @type {{times: number[], signals: Compared[]} | null} */ (null);
@@ -121,7 +123,7 @@ function curvesOf(target, name) {
   const { unit } = target.signals[index];
   const rms = found.rms === null ? "" : `, RMS difference ${Number(found.rms.toPrecision(3))} ${unit}`.trimEnd();
   return [
-    { name, unit, colour: colour(index), values: found.target },
-    { name: `${name} simulated${rms}`, unit, colour: colour(index), dashed: true, values: found.simulation },
+    { name, unit, colour: colour(index), dash: dash(index), values: found.target },
+    { name: `${name} simulated${rms}`, unit, colour: colour(index), dash: SIMULATED, values: found.simulation },
   ];
 }

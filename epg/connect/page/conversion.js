@@ -116,9 +116,7 @@ function preview({ side, port }, end, { scale, offset, low, high, unit }) {
   const modelUnit = unit || end.model_unit || port.unit;
   const { component_unit: componentUnit } = end;
   const [before, after] = side === "inputs" ? [componentUnit, modelUnit] : [modelUnit, componentUnit];
-  const units = current().units;
-  const known = units[before] && units[after] && units[before][0] === units[after][0];
-  const factor = !scale && before && after && known ? units[before][1] / units[after][1] : 1;
+  const factor = scale ? 1 : unitFactor(before, after);
   const numbers = [scale || "1", offset || "0", low || "-Infinity", high || "Infinity"].map(number);
   if (numbers.some(Number.isNaN)) return "";
   const [scaled, shifted, lowest, highest] = numbers;
@@ -127,6 +125,12 @@ function preview({ side, port }, end, { scale, offset, low, high, unit }) {
     side === "inputs" ? limit(value * factor * scaled + shifted) : limit(value * scaled + shifted) * factor;
   const shown = (value, unitOfIt) => [Number(value.toPrecision(6)), unitOfIt].filter((part) => part !== "").join(" ");
   return [0, 1].map((value) => `${shown(value, before)} → ${shown(convert(value), after)}`).join(", ");
+}
+
+// The factor from one unit to another; 1 if one is missing or unknown, or if they measure different quantities.
+function unitFactor(before, after) {
+  const { [before]: from, [after]: to } = current().units;
+  return before && after && from && to && from[0] === to[0] ? from[1] / to[1] : 1;
 }
 
 // A number as the bindings write it: "0.5", or a ratio such as "361/5625".

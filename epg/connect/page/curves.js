@@ -5,7 +5,7 @@ import { h } from "./dom.js";
 import { drawnAs, newPlot } from "./plots.js";
 
 /**
- * @typedef {{name: string, unit: string, colour: string, dashed?: boolean, values: (number | null)[]}} Curve
+ * @typedef {{name: string, unit: string, colour: string, dash?: number[], values: (number | null)[]}} Curve
  * @typedef {{times: number[], mark: boolean, curves: Curve[]}} Curves  `mark` draws a line at the time 0
  */
 
@@ -36,7 +36,7 @@ function plotOf(place, unit, shown) {
   const plot = newPlot(
     place,
     unit,
-    found.map(({ name, colour, dashed }) => ({ label: name, stroke: colour, ...(dashed ? { dash: [6, 4] } : {}) })),
+    found.map(({ name, colour, dash }) => ({ label: name, stroke: colour, dash })),
     { hooks: mark ? { draw: [drawMark] } : {} },
   );
   plot.setData([times, ...found.map((each) => each.values)]);
@@ -63,14 +63,19 @@ function drawMark(plot) {
 export const legend = (curves) =>
   h(
     "ul.legend",
-    curves.map(({ name, colour, dashed }) => h("li", { key: name }, swatch(colour, dashed), ` ${name}`)),
+    curves.map(({ name, colour, dash }) => h("li", { key: name }, swatch(colour, dash), ` ${name}`)),
   );
 
-export const swatch = (colour, dashed = false) =>
+// A piece of the line of a curve.
+export const swatch = (colour, dash = []) =>
   h(
     "svg",
-    { class: "swatch", viewBox: "0 0 10 10", "aria-hidden": "true" },
-    dashed
-      ? [0, 6].map((x) => h("rect", { key: String(x), x, y: "3", width: "4", height: "4", fill: colour }))
-      : h("rect", { width: "10", height: "10", fill: colour }),
+    { class: "swatch", viewBox: "0 0 22 8", "aria-hidden": "true" },
+    h("path", {
+      d: "M0 4H22",
+      fill: "none",
+      stroke: colour,
+      "stroke-width": "4",
+      "stroke-dasharray": dash.join(" ") || null,
+    }),
   );

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Modal dialogs. The browser's <dialog> keeps the focus inside, and restores it on closing. An open dialog is drawn
-// again with every state; text that the user has typed stays.
+// Dialogs. While one is open, nothing else on the page can be used but the button that stops a robot: so it is not one of
+// the browser's modal dialogs, which cover all other elements. An open dialog is drawn again with every state; text that
+// the user has typed stays.
 
 import { h, render } from "./dom.js";
 import { icon } from "./icons.js";
+
+const OTHERS = "body > :not(#robot, #said, dialog)";
 
 let open = null; // {element, title, content}
 
@@ -14,18 +17,31 @@ export function openDialog(name, title, content) {
   const element = document.createElement("dialog");
   element.className = `dialog dialog-${name}`;
   element.setAttribute("aria-labelledby", "dialog-title");
-  element.addEventListener("close", () => {
-    if (open?.element === element) open = null;
-    element.remove();
-  });
   document.body.append(element);
   open = { element, title, content };
   drawDialog();
-  element.showModal();
+  element.show();
+  setOthers(true);
 }
 
+document.addEventListener("keydown", (event) => {
+  if (event.key === "Escape") closeDialog();
+});
+
 export function closeDialog() {
-  open?.element.close();
+  if (!open) return;
+  const { element } = open;
+  open = null;
+  setOthers(false);
+  element.close(); // gives the focus back
+  element.remove();
+  if (document.activeElement === document.body) (document.getElementById("panel") ?? main()).focus();
+}
+
+const main = () => document.getElementById("main");
+
+function setOthers(inert) {
+  for (const each of document.querySelectorAll(OTHERS)) /** @type {HTMLElement} */ (each).inert = inert;
 }
 
 export function drawDialog() {

@@ -10,7 +10,9 @@ const SVG_TAGS = new Set(["svg", "path", "circle", "g", "rect"]);
 // Describes an element, as h("p.note", { title: "all ports" }, "4 ports"): its tag and classes, its attributes if it has
 // any, and its children. Special attributes:
 //   key      identifies the element among its siblings
-//   on...    an event handler
+//   on...    an event handler; its result is not used: the result `false` would cancel the event
+//   disabled a button that has the focus keeps it, and is only announced as disabled, until the focus leaves it
+//   onchoose of a list: called with its value when the user has chosen (see `listenForChoice`)
 //   keep     render() does not touch the children; another function draws them
 //   shown    called with the element after each drawing
 //   initial  the first value of an input; later the user's text stays
@@ -26,11 +28,27 @@ const isAttributes = (value) => value?.constructor === Object && !("tag" in valu
 
 export function render(parent, descriptions) {
   const focused = document.activeElement;
+  const places = placesAround(focused);
   const after = [];
   renderChildren(parent, [descriptions].flat(Infinity).filter(Boolean), after);
   for (const call of after) call();
-  // Moving an element takes the focus from it.
-  if (focused && focused !== document.activeElement && focused.isConnected && parent.contains(focused)) focused.focus();
+  // Moving an element takes the focus from it. If it is gone or disabled, the closest element around it gets the focus:
+  // else the next Tab begins at the page's start.
+  const now = document.activeElement;
+  if (now === focused ? canFocus(focused) : now !== document.body) return;
+  places.find(canFocus)?.focus({ preventScroll: true });
+}
+
+const canFocus = (element) =>
+  element.isConnected && !element.matches(":disabled") && !element.closest("[hidden], [inert]");
+
+// An element, and the elements around it that can have the focus.
+function placesAround(element) {
+  const places = [];
+  for (let each = element; each && each !== document.body; each = each.parentElement) {
+    if (each === element || each.hasAttribute("tabindex") || each.localName === "dialog") places.push(each);
+  }
+  return places;
 }
 
 function renderChildren(parent, descriptions, after) {
@@ -77,6 +95,7 @@ function make(wanted) {
   const node = SVG_TAGS.has(tag) ? document.createElementNS(SVG, tag) : document.createElement(tag);
   node.epgKey = attributes.key;
   node.epgAttributes = {};
+  if (tag === "select") listenForChoice(node);
   return node;
 }
 
@@ -92,18 +111,77 @@ function update(node, wanted, after) {
   node.epgAttributes = attributes;
   if (!attributes.keep) renderChildren(node, children, after);
   // A select accepts a value only after its options exist. Its `value` always follows the files.
-  if (node.localName === "select" && node.value !== attributes.value) node.value = attributes.value;
+  if (node.localName === "select" && !node.epgChoosing && node.value !== attributes.value)
+    node.value = attributes.value;
   if ("checked" in attributes) node.checked = Boolean(attributes.checked);
   if (attributes.shown) after.push(() => attributes.shown(node));
 }
 
 function set(node, name, value, old) {
-  if (["key", "keep", "shown", "checked"].includes(name) || value === old) return;
+  if (["key", "keep", "shown", "checked", "onchoose"].includes(name) || value === old) return;
   if (name === "value" && node.localName === "select") return;
-  if (name.startsWith("on")) node[name] = value;
+  if (name.startsWith("on")) node[name] = value && ((event) => void value(event));
+  else if (name === "disabled" && node.localName === "button") disable(node, Boolean(value));
   else if (name === "initial") node.value = value ?? "";
   else if (value === null || value === undefined || value === false) node.removeAttribute(name);
   else node.setAttribute(name, value === true ? "" : String(value));
+}
+
+// Browsers take the focus from a button that becomes disabled, and Firefox then goes on at the page's start.
+function disable(button, isDisabled) {
+  const keeps = isDisabled && button === document.activeElement;
+  button.toggleAttribute("disabled", isDisabled && !keeps);
+  button.ariaDisabled = keeps ? "true" : null;
+  if (keeps)
+    button.addEventListener("blur", () => disable(button, Boolean(button.epgAttributes.disabled)), { once: true });
+}
+
+// True if a button is disabled, also if it still has the focus.
+export const isBlocked = (button) => button.disabled || button.ariaDisabled === "true";
+
+window.addEventListener(
+  "click",
+  (event) => {
+    if (!(event.target instanceof Element) || !event.target.closest("button[aria-disabled=true]")) return;
+    event.preventDefault();
+    event.stopImmediatePropagation();
+  },
+  { capture: true },
+);
+
+const PAUSE = 1000; // ms without a key after which a choice by keys is complete
+
+// A list changes with each letter that is typed to find an entry, and with each arrow key. The user has chosen after a
+// pause, with Enter, with a key such as Ctrl+S, when the focus leaves the list, or with the pointer. Escape takes the choice
+// back.
+function listenForChoice(list) {
+  let byKey = false;
+  const end = () => {
+    window.clearTimeout(list.epgChoosing);
+    list.epgChoosing = 0;
+  };
+  const choose = () => {
+    if (!list.epgChoosing) return;
+    end();
+    if (list.isConnected) list.epgAttributes.onchoose(list.value);
+  };
+  list.addEventListener("change", () => {
+    if (!list.epgAttributes.onchoose) return;
+    end();
+    list.epgChoosing = window.setTimeout(choose, PAUSE);
+    if (!byKey) choose();
+  });
+  list.addEventListener("blur", choose);
+  list.addEventListener("pointerdown", () => {
+    byKey = false;
+  });
+  list.addEventListener("keydown", (event) => {
+    byKey = true;
+    if (event.key === "Enter" || event.ctrlKey || event.metaKey) choose();
+    if (event.key !== "Escape" || !list.epgChoosing) return;
+    end();
+    list.value = list.epgAttributes.value;
+  });
 }
 
 // A text field with its label. A hint is below it.

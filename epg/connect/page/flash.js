@@ -43,7 +43,7 @@ function question(replace) {
   const board = boards.found.find((each) => each.id === chosen) || only;
   return [
     only ? h("p", { key: "board" }, "Board: ", h("b", only.shown)) : choice(boards.found),
-    h("p", { key: "file" }, "File: ", h("code", { title: boards.found[0].file }, shortFile(boards.found[0].file))),
+    board && h("p", { key: "file" }, "File: ", h("code", { title: board.file }, shortFile(board.file))),
     current().draft.changed &&
       h(
         "p",

@@ -47,7 +47,7 @@ function row(state, base, field) {
       id: name,
       disabled: isLocked(state, field) || value?.how === "call",
       "aria-describedby": `${name}-hint`,
-      onchange: (event) => fill(path, event.target.value.trim()),
+      onchoose: (text) => fill(path, text.trim()),
     }),
     hint(name, field),
     place(state, path, field, value),
@@ -147,8 +147,9 @@ export function hint(name, field) {
 }
 
 /**
- * The input of one value. An empty text means the default.
+ * The input of one value. An empty text means the default. `onchoose` is called with a text that is complete.
  * @param {Field} field
+ * @param {Record<string, any>} attributes
  */
 export function control(field, text, attributes) {
   const choices = field.type === "boolean" ? ["true", "false"] : field.choices;
@@ -161,6 +162,7 @@ export function control(field, text, attributes) {
       autocomplete: "off",
       initial: text,
       placeholder,
+      onchange: ({ target }) => attributes.onchoose?.(target.value),
       ...attributes,
     });
   }

@@ -8,7 +8,6 @@ import { closeDialog, openDialog } from "./dialog.js";
 import { h } from "./dom.js";
 import { icon } from "./icons.js";
 import { counted, shortFile } from "./problems.js";
-import { stopButton } from "./live.js";
 import { current } from "./server.js";
 import { simulate } from "./simulation.js";
 import { backToSystem } from "./system.js";
@@ -36,7 +35,6 @@ export function header(state) {
     targetButton(state),
     problemsButton(state),
     space,
-    stopButton(state),
     h(
       "p",
       { class: `saved${draft.changed ? " unsaved" : ""}`, key: "saved", role: "status" },
@@ -119,7 +117,7 @@ function projectName(state) {
         "aria-label": "Project",
         title: folder,
         value: name,
-        onchange: (event) => attempt("open", { target: event.target.value }),
+        onchoose: (value) => attempt("open", { target: value }),
       },
       targets.map((each) => h("option", { key: each, value: each }, each)),
     ),

@@ -10,6 +10,12 @@ let refusal = "This page was opened without the key that EPG's address contains.
 export const whyLocked = () => (secret ? null : refusal);
 export const sign = () => (secret ? { "X-EPG-Secret": secret } : {});
 
+// For a worker, which has neither an address nor a storage of its own.
+export const secretOf = () => secret;
+export function adopt(text) {
+  secret = text;
+}
+
 // Forgets the secret. EPG does not know it, because EPG was started again.
 export function lock() {
   keep(null);

@@ -4,49 +4,45 @@
 import { comparisonPart } from "./comparison.js";
 import { swatch } from "./curves.js";
 import { h, id } from "./dom.js";
+import { enablePart, answersPart, goalsPart } from "./enabling.js";
 import { icon } from "./icons.js";
-import { followTarget, live, page, tell } from "./live_events.js";
+import { command, isMade, refusal, request, save } from "./live_commands.js";
+import { age, followTarget, isOld, live } from "./live_events.js";
+import { keyPart } from "./live_key.js";
 import { drawValues, value } from "./live_values.js";
-import { colour, drawPlots } from "./plots.js";
-import { held, repeated } from "./press.js";
+import { actuatorsPart, moveOn } from "./move_by_hand.js";
+import { colour, dash, drawPlots } from "./plots.js";
 import { recordingPart } from "./recording.js";
-import { saveFrom, savePng } from "./save.js";
-import { ask, askRepeatedly, current } from "./server.js";
+import { isEnabled, isUnattended } from "./robot.js";
+import { savePng } from "./save.js";
+import { current } from "./server.js";
 import { timingPart } from "./timing.js";
-import { attempt, draw, say, ui } from "./ui.js";
-
-const HOLD = 500; // ms that the button for enabling must be pressed
-const PULSE = 100; // ms between two commands that prolong a movement; each lasts 250 ms at most
+import { attempt, draw } from "./ui.js";
 
 let chosen = /** @type {Set<string> | null} */ (null); // the names of the signals in the plots; null: the first ones
-let refused = null; // the last error: {message, hint}
 let port = ""; // the port in the field
 let drawing = false;
 
 /** @param {State} state */
 export const liveTitle = ({ live: { target } }) =>
-  target ? `Live ${isEnabled(target) ? "● enabled" : "○ disabled"}` : "Live";
+  target ? `Live ${isOld() ? "? old" : TITLES[Number(isEnabled(target)) + Number(isUnattended(target))]}` : "Live";
 
-const isEnabled = (target) => target.state.enabled === "1";
-
-const move = askRepeatedly("move", 1);
-
-async function request(action, body) {
-  const answer = await ask(action, body);
-  refused = answer.error ?? null;
-  if (refused) say(`Refused: ${refused.message}`);
-  draw();
-  return answer;
-}
+const TITLES = ["○ disabled", "● enabled", "● enabled, unattended"];
 
 /** @param {State} state */
 export function livePanel(state) {
   const { target } = state.live;
-  if (!target) return [problemPart(state.live.problem), problemPart(refused), portsPart(state.live)];
+  if (!target) {
+    typed.clear();
+    sent.clear();
+    const key = keyPart(state.live.locked, (body) => request("connect", body));
+    return [problemPart(state.live.problem), problemPart(refusal()), key, portsPart(state.live)];
+  }
   const ported = shownSignals(target).filter((index) => !target.signals[index].loop);
   return [
     headPart(target),
-    problemPart(refused),
+    problemPart(refusal()),
+    isOld() && h("p.alarm", { key: "old" }, `The values are old: no news for ${Math.floor(age())} s.`),
     signalsPart(target),
     h("div.plots", { key: "plots", keep: true, shown: (place) => drawPlotsNow(place, target) }),
     h(
@@ -119,66 +115,46 @@ function portsPart({ ports, console }) {
   );
 }
 
-// The head: state, stop, enable
+// The head: enable, state, fault
 
 function headPart(target) {
-  const enabled = isEnabled(target);
   return h(
     "div.live-head",
-    { key: "head" },
-    h("button", { key: "stop", class: "stop", title: "Space bar", onpointerdown: stop, onclick: stop }, "Stop"),
-    h(
-      "p",
-      { key: "state", class: enabled ? "live-enabled" : "", role: "status" },
-      h("b", target.name),
-      enabled ? " enabled" : " disabled",
-      !target.matches && h("span.failed-end", " another firmware than that of the last build: it can only be watched"),
-      live.dropped > 0 && h("span.hint", ` ${live.dropped} rows dropped`),
-    ),
-    h(
-      "button.hold",
-      { key: "enable", disabled: enabled || !target.matches, ...held(() => request("enable", { page }), HOLD) },
-      "Enable (hold)",
-    ),
+    { key: "head", shown: keepInSight },
+    enablePart(target),
     h("button.quiet", { key: "disconnect", onclick: () => request("disconnect") }, "Disconnect"),
+    !target.matches &&
+      h("p.failed-end", { key: "other" }, "another firmware than that of the last build: it can only be watched"),
+    live.dropped > 0 && h("p.hint", { key: "dropped" }, `${live.dropped} rows dropped`),
+    goalsPart(target),
+    answersPart(target),
     h(
       "p.hint",
       { key: "hint" },
-      "The space bar stops. It is not an emergency stop, and does nothing while another window is in front.",
+      "While the robot is enabled, space and Escape stop it. They are not an emergency stop, and do nothing while another window is in front.",
     ),
     faultPart(target),
   );
+}
+
+const heights = new ResizeObserver((all) => {
+  for (const { target } of all) setHeight(target);
+});
+
+// The browser scrolls an element that gets the focus to a place that the head does not cover (see style.css).
+function keepInSight(head) {
+  heights.observe(head);
+  setHeight(head);
+}
+
+function setHeight(head) {
+  document.documentElement.style.setProperty("--live-head", `${head.offsetHeight}px`);
 }
 
 // The latched fault: its cause, and the next steps of the user.
 const faultPart = ({ fault }) =>
   fault &&
   h("p.failed-end", { key: "fault", role: "alert" }, icon("error"), h("b", fault.text), h("span.hint", fault.remedy));
-
-// Stop in the head of the page, for the other tabs. While the tab Live is shown, it has a button of its own.
-/** @param {State} state */
-export const stopButton = (state) =>
-  state.live?.target &&
-  !isShown() &&
-  h("button", { key: "stop-robot", class: "stop", onpointerdown: stop, onclick: stop }, "Stop robot");
-
-const isShown = () => ui.tab === "live" && ui.dock !== "closed";
-
-// Disables the target. It has a connection of its own (see server.js), and is never behind other requests.
-function stop() {
-  request("stop");
-}
-
-window.addEventListener("keydown", (event) => spaceBar(event, true), { capture: true });
-window.addEventListener("keyup", (event) => spaceBar(event, false), { capture: true });
-
-// In the tab Live the space bar stops the target, wherever the focus is, and does nothing else.
-function spaceBar(event, stops) {
-  if (event.key !== " " || !isShown() || !current()?.live?.target) return;
-  event.preventDefault();
-  event.stopPropagation();
-  if (stops && !event.repeat) stop();
-}
 
 // Plots
 
@@ -195,20 +171,23 @@ function signalsPart(target) {
     h("legend", "Signals"),
     target.signals.map((each, index) =>
       h(
-        "label",
+        "div.live-signal",
         { key: each.name },
-        h("input", {
-          type: "checkbox",
-          checked: shown.includes(index),
-          onchange: (event) => {
-            if (event.target.checked) chosen.add(each.name);
-            else chosen.delete(each.name);
-            draw();
-          },
-        }),
-        swatch(colour(index)),
-        ` ${each.name} `,
-        value(index, each.unit),
+        h(
+          "label",
+          h("input", {
+            type: "checkbox",
+            checked: shown.includes(index),
+            onchange: (event) => {
+              if (event.target.checked) chosen.add(each.name);
+              else chosen.delete(each.name);
+              draw();
+            },
+          }),
+          swatch(colour(index), dash(index)),
+          ` ${each.name}`,
+        ),
+        value(index, each.unit), // not in the label: a name must not change all the time
       ),
     ),
   );
@@ -219,21 +198,18 @@ function savePart(target) {
     const text = "This target has no memory for streams and recordings: see 'capture' in the settings of its .tcf.";
     return h("p.hint", { key: "save" }, text);
   }
-  const shown = shownSignals(target).map((index) => ({ name: target.signals[index].name, colour: colour(index) }));
-  const save = async (form) => {
-    try {
-      refused = null;
-      await saveFrom(`api/live/save?what=stream&as=${form}`, `${target.name}.${form}`);
-    } catch (error) {
-      refused = JSON.parse(/** @type {Error} */ (error).message).error;
-    }
-    draw();
-  };
+  const shown = shownSignals(target).map((index) => ({
+    name: target.signals[index].name,
+    colour: colour(index),
+    dash: dash(index),
+  }));
+  const button = (form, text, title) =>
+    h("button", { key: form, title, onclick: () => save("stream", form, `${target.name}.${form}`) }, text);
   return h(
-    "p.live-save",
+    "div.live-save",
     { key: "save" },
-    h("button", { onclick: () => save("csv"), title: "All signals, as far back as EPG keeps them" }, "Save as CSV"),
-    h("button", { onclick: () => save("mcap"), title: "For PlotJuggler and Foxglove" }, "Save as MCAP"),
+    button("csv", "Save as CSV", "All signals, as far back as they are recorded"),
+    button("mcap", "Save as MCAP", "For PlotJuggler and Foxglove"),
     h(
       "button",
       {
@@ -243,14 +219,43 @@ function savePart(target) {
       },
       "Save as PNG",
     ),
+    h("p.hint.live-kept", { key: "kept" }, keptText()),
+    h("p.hint", { key: "making", role: "status" }, MAKING[isMade()]),
   );
 }
+
+// The time since which rows are recorded, their size, and how far a file with them has been written.
+function keptText() {
+  if (!live.kept?.since) return "";
+  const { since, size, most, problem, saving } = live.kept;
+  if (problem) return `The newest values are not recorded: ${problem}.`;
+  const time = new Date(1000 * since).toLocaleTimeString();
+  const text = `Recorded since ${time}: ${(size / 1e6).toFixed(0)} MB of at most ${(most / 1e6).toFixed(0)} MB.`;
+  return saving === null ? text : `${text} The file is written: ${Math.round(100 * saving)} %.`;
+}
+
+function drawKept() {
+  const place = document.querySelector(".live-kept");
+  const text = keptText();
+  if (place && place.textContent !== text) place.textContent = text;
+}
+
+const MAKING = {
+  csv: "EPG makes the file.",
+  mcap: "EPG makes the file. If its package for MCAP is not installed, EPG installs it first: this can take some minutes.",
+};
 
 // Reads the events of the target, if one is connected. Must be called with every new state.
 /** @param {State} state */
 export function followLive(state) {
   const target = state.live?.target;
-  if (target) followTarget(target.signals, (all) => (all ? again() : drawSoon()));
+  if (target) followTarget(target.signals, whenTold);
+}
+
+function whenTold(all) {
+  moveOn();
+  if (all) again();
+  else drawSoon();
 }
 
 function again() {
@@ -262,12 +267,18 @@ function drawSoon() {
   if (drawing || document.hidden) return;
   drawing = true;
   requestAnimationFrame(() => {
-    drawing = false;
+    const begin = performance.now();
     const place = /** @type {HTMLElement | null} */ (document.querySelector(".plots"));
     const target = current()?.live?.target;
-    if (!target) return;
-    drawValues();
-    if (place) drawPlotsNow(place, target);
+    if (target) {
+      drawValues();
+      drawKept();
+    }
+    if (target && place) drawPlotsNow(place, target);
+    // On a slow computer, keys and signs of life have as much time as drawing.
+    setTimeout(() => {
+      drawing = false;
+    }, performance.now() - begin);
   });
 }
 
@@ -277,19 +288,13 @@ function drawPlotsNow(place, target) {
 
 // Setpoints, parameters, actuators, lines
 
-async function command(line) {
-  const { answer, error } = await request("command", { line });
-  tell([`> ${line}`, ...(answer ?? [`error ${error.message}`])]);
-  draw();
-}
-
 const setpointsPart = ({ setpoints }) =>
   setpoints.length > 0 &&
   h(
     "section",
     { key: "setpoints" },
     h("h3", "Setpoints"),
-    setpoints.map((name) => field(id("setpoint", name), name, "", "", (text) => command(`${name}=${text}`))),
+    setpoints.map((each) => valueField(id("setpoint", each.name), each, "", (text) => command(`${each.name}=${text}`))),
   );
 
 const parametersPart = ({ parameters, matches }) =>
@@ -303,7 +308,7 @@ const parametersPart = ({ parameters, matches }) =>
       return h(
         "div.live-parameter",
         { key: each.name },
-        field(id("parameter", each.name), each.name, String(each.value), each.unit, (text) =>
+        valueField(id("parameter", each.name), { name: each.name, unit: each.unit }, String(each.value), (text) =>
           command(`set ${each.name}=${text}`),
         ),
         each.low !== null && each.high !== null && slider(each),
@@ -325,7 +330,7 @@ const parametersPart = ({ parameters, matches }) =>
 const slider = (each) =>
   h("input", {
     type: "range",
-    "aria-label": each.name,
+    "aria-label": [each.name, each.unit].filter(Boolean).join(" "),
     min: each.low,
     max: each.high,
     step: (each.high - each.low) / 200,
@@ -333,53 +338,70 @@ const slider = (each) =>
     onchange: (event) => command(`set ${each.name}=${event.target.value}`),
   });
 
-// A field that sends its text with Enter.
-function field(key, label, text, unit, send) {
+// Texts of fields, by their ids: typed and not sent; and sent last, with the value that the field had before.
+const typed = /** @type {Map<string, string>} */ (new Map());
+const sent = /** @type {Map<string, {text: string, instead: string}>} */ (new Map());
+
+// A field of a number. Enter sends it. Until then the field is marked, and Escape restores `known`, the number of the
+// target, or else the number that was sent last. The unit belongs to the field's name.
+function valueField(key, { name, unit, low = null, high = null }, known, send) {
+  const last = sent.get(key);
+  const shown = last?.instead === known ? last.text : known;
+  const isTyped = typed.has(key);
+  const take = (text) => {
+    if (text.trim() === shown) typed.delete(key);
+    else typed.set(key, text);
+    draw();
+  };
+  const act = async (text) => {
+    if (!(await send(text))) return; // it is still not sent
+    sent.set(key, { text, instead: known });
+    if (typed.get(key)?.trim() === text) typed.delete(key);
+    draw();
+  };
+  const names = [`${key}-name`, unit && `${key}-unit`].filter(Boolean).join(" ");
+  const range = low === null && high === null ? "" : `${low} to ${high} `;
   return h(
-    "div.field",
-    { key },
-    h("label", { for: key }, label),
+    "div",
+    { key, class: `field${isTyped ? " unsent" : ""}` },
+    h("label", { key: "name", id: `${key}-name`, for: key }, name),
     h("input", {
+      key: "input",
       id: key,
       type: "text",
       inputmode: "decimal",
-      initial: text,
+      initial: typed.get(key) ?? shown,
       spellcheck: "false",
+      "aria-labelledby": names,
+      "aria-describedby": `${key}-range ${key}-unsent`,
+      oninput: (event) => take(event.target.value),
       onkeydown: (event) => {
-        if (event.key === "Enter" && event.target.value.trim()) send(event.target.value.trim());
+        if (event.key === "Escape" && isTyped) take(shown);
+        else sendWithEnter(event, act);
       },
     }),
-    unit && h("span.hint", unit),
+    (range || unit) &&
+      h(
+        "span.hint",
+        { key: "unit" },
+        h("span", { key: "range", id: `${key}-range` }, range),
+        h("span", { key: "unit", id: `${key}-unit` }, unit),
+      ),
+    isTyped &&
+      h(
+        "span.not-sent",
+        { key: "unsent", id: `${key}-unsent` },
+        `not sent: Enter sends it, Escape restores ${shown || "the empty field"}`,
+      ),
   );
 }
 
-const actuatorsPart = (target) =>
-  target.actuators.length > 0 &&
-  h(
-    "section",
-    { key: "actuators" },
-    h("h3", "Move by hand"),
-    h("p.hint", isEnabled(target) ? "Stop the target first." : "Hold a button: the actuator moves with a duty of 0.1."),
-    target.actuators.map((name) =>
-      h(
-        "p",
-        { key: name },
-        `${name} `,
-        [-0.1, 0.1].map((duty) =>
-          h(
-            "button",
-            {
-              key: String(duty),
-              "aria-label": `Move ${name} ${duty < 0 ? "backwards" : "forwards"}`,
-              disabled: isEnabled(target) || !target.matches,
-              ...repeated(() => move({ actuator: name, duty }), PULSE),
-            },
-            duty < 0 ? "−" : "+",
-          ),
-        ),
-      ),
-    ),
-  );
+function sendWithEnter(event, send) {
+  const text = event.target.value.trim();
+  if (event.key !== "Enter" || event.repeat || !text) return;
+  event.preventDefault(); // the same key must not press a button of a dialog that opens
+  send(text);
+}
 
 const linesPart = () =>
   h(
@@ -387,5 +409,15 @@ const linesPart = () =>
     { key: "lines", class: "live-console" },
     h("h3", "Console"),
     h("div.log-end", { role: "log", "aria-label": "Console", tabindex: "0" }, h("pre.log", live.lines.join("\n"))),
-    field("live-command", "Command", "", "", command),
+    h(
+      "div.field",
+      h("label", { for: "live-command" }, "Command"),
+      h("input", {
+        id: "live-command",
+        type: "text",
+        spellcheck: "false",
+        autocomplete: "off",
+        onkeydown: (event) => sendWithEnter(event, command),
+      }),
+    ),
   );

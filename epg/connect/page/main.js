@@ -19,8 +19,10 @@ import { drawStops, isKnown, listenForPresses } from "./handles.js";
 import { header } from "./header.js";
 import { modelHead, modelPorts } from "./ports.js";
 import { followLive } from "./live.js";
+import { isOld } from "./live_events.js";
 import { current, follow, hasEnded } from "./server.js";
 import { simulationOutcome } from "./simulation.js";
+import { robotBar } from "./robot.js";
 import { startPage } from "./start.js";
 import { drawLanes, systemPage } from "./system.js";
 import { attempt, draw, ui, whenDrawn } from "./ui.js";
@@ -32,7 +34,7 @@ function drawPage() {
   const state = current();
   render(part("bars"), bars(state));
   if (hasEnded()) {
-    for (const name of ["header", "dock"]) part(name).hidden = true;
+    for (const name of ["robot", "header", "dock"]) part(name).hidden = true;
     render(part("main"), [h("p.ended", { key: "ended" }, "EPG has ended. This window can be closed.")]);
     return;
   }
@@ -41,6 +43,7 @@ function drawPage() {
   const started = state.phase !== "choose";
   document.title = started ? `${state.draft.changed ? "● " : ""}${state.project.name} – EPG` : "New project – EPG";
   document.body.className = `${state.phase} dock-${started ? ui.dock : "closed"}${ui.held ? " holding" : ""}`;
+  drawRobot(state);
   render(part("header"), header(state));
   render(part("main"), MAIN[state.phase](state));
   part("dock").hidden = !started;
@@ -50,6 +53,22 @@ function drawPage() {
   drawWires();
   drawLanes();
 }
+
+/** @param {State} state */
+function drawRobot(state) {
+  const bar = robotBar(state);
+  part("robot").hidden = !bar;
+  document.body.classList.toggle("old", Boolean(bar) && isOld());
+  render(part("robot"), bar ?? []);
+  measureRobot();
+}
+
+// The browser scrolls an element that gets the focus to a place below the bar (see style.css).
+function measureRobot() {
+  document.documentElement.style.setProperty("--robot", `${part("robot").offsetHeight}px`);
+}
+
+new ResizeObserver(measureRobot).observe(part("robot"));
 
 const MAIN = { choose: startPage, connect: diagram, system: systemPage };
 
@@ -93,16 +112,27 @@ whenDrawn(drawPage);
 document.addEventListener("keydown", (event) => {
   const state = current();
   if (!(event.ctrlKey || event.metaKey) || event.altKey || state?.phase !== "connect") return;
-  const writing =
-    event.target instanceof Element && event.target.matches("input[type=text], input[type=search], textarea");
   const key = event.key.toLowerCase();
   if (key === "s") {
     event.preventDefault();
     if (state.draft.changed) attempt("save");
-  } else if (!writing && !document.querySelector("dialog[open]") && (key === "z" || key === "y")) {
+  } else if ((key === "z" || key === "y") && !isWriting(event.target)) {
     event.preventDefault();
     const redo = key === "y" || event.shiftKey;
     if (redo ? state.draft.can_redo : state.draft.can_undo) attempt(redo ? "redo" : "undo");
+  }
+});
+
+// The browser itself undoes typed text.
+const isWriting = (target) =>
+  document.querySelector("dialog[open]") ||
+  (target instanceof Element && target.matches("input[type=text], input[type=search], textarea"));
+
+// Firefox does not scroll if a line of the element that gets the focus is in the window, although something covers it.
+document.addEventListener("focusin", ({ target }) => {
+  const reached = "a, button, input, select, summary, [data-handle]";
+  if (target instanceof Element && target.matches(reached) && target.matches(":focus-visible")) {
+    target.scrollIntoView({ block: "nearest" });
   }
 });
 
@@ -124,8 +154,17 @@ follow(() => {
   if (current() && !hasEnded()) {
     followActivities(current(), OUTCOMES);
     followLive(current());
-    if (!begun && current().live.opens) Object.assign(ui, { tab: "live", dock: "large" }); // also while a program runs
+    if (!begun) begin(current());
     begun = true;
   }
   draw();
 });
+
+// While a robot is connected, the page begins at it, also after it was loaded again, and while a program runs.
+/** @param {State} state */
+function begin({ live }) {
+  if (!live?.opens && !live?.target) return;
+  Object.assign(ui, { tab: "live", dock: "large" });
+  draw();
+  part("dock").scrollIntoView(); // in a low or narrow window the whole page scrolls
+}

@@ -153,7 +153,7 @@ function field(state, side, port, end, n) {
         "aria-label": n === 0 ? null : `${name}, end ${n + 1}`,
         value: end ? `:${end.reference}` : isUnconnected(state, name) ? "unconnected" : "",
         disabled: !state.editable,
-        onchange: (event) => choose(side, name, n, event.target.value),
+        onchoose: (value) => choose(side, name, n, value),
       },
       options(state, side, port, end, n),
     ),
@@ -204,9 +204,15 @@ function choose(side, name, n, value) {
   if (value === "unconnected") return setEnds(name, []);
   if (value === "") {
     ui.adding = null;
-    return n === 0 && side === "inputs" ? disconnect(name) : replaceEnd(name, n, null);
+    return n === 0 && side === "inputs" ? disconnect(name) : removeEnd(name, n);
   }
   return replaceEnd(name, n, value.slice(1));
+}
+
+// The list of the last end disappears, and the one before it gets the focus.
+async function removeEnd(name, n) {
+  await replaceEnd(name, n, null);
+  if (!document.getElementById(id("ends", name, n))) document.getElementById(id("ends", name, n - 1))?.focus();
 }
 
 /**

@@ -98,10 +98,30 @@ export function problem(message) {
         placeText(message.file.split(/[\\/]/).pop(), message.line),
       ),
     command && copyButton("Copy command", command),
+    applyButtons(message),
     message.targets?.map((target) =>
       h("button.quiet", { key: target, onclick: () => attempt("open", { target }) }, `Open ${target}`),
     ),
   );
+}
+
+// A button for each edit of a message. If there are several, each is named by its sentence.
+/** @param {Message} message */
+function applyButtons({ edits = [] }) {
+  return edits.map((edit) => {
+    const { file, line, column, old, sentence } = edit;
+    const isWord = old !== "" && !/[\r\n]/.test(old + edit.new);
+    return h(
+      "button",
+      {
+        key: sentence,
+        onclick: () => attempt("apply", { file, line, column, new: edit.new }),
+        "aria-label": `Apply: ${isWord ? `replace ${old} by ${edit.new}` : sentence}`,
+        title: isWord ? `${old} → ${edit.new}` : edit.new.trim(),
+      },
+      edits.length > 1 ? `Apply: ${sentence}` : "Apply",
+    );
+  });
 }
 
 /** @param {Message} message */

@@ -3,8 +3,9 @@
 
 import { drawCurves, legend } from "./curves.js";
 import { h } from "./dom.js";
-import { colour } from "./plots.js";
-import { saveFrom, savePng } from "./save.js";
+import { save } from "./live_commands.js";
+import { colour, dash } from "./plots.js";
+import { savePng } from "./save.js";
 import { getJson } from "./server.js";
 import { draw } from "./ui.js";
 
@@ -153,7 +154,13 @@ async function fetchRecorded(target) {
     const known = target.signals.map((each) => each.name);
     const curves = names.map((name, column) => {
       const index = known.indexOf(name);
-      return { name, unit: target.signals[index]?.unit ?? "", colour: colour(index), values: columns[column] };
+      return {
+        name,
+        unit: target.signals[index]?.unit ?? "",
+        colour: colour(index),
+        dash: dash(index),
+        values: columns[column],
+      };
     });
     recorded = { times, mark: triggered, curves };
     draw();
@@ -181,11 +188,7 @@ function resultPart(name, shown) {
     h(
       "p",
       { key: "save" },
-      h(
-        "button",
-        { onclick: () => saveFrom("api/live/save?what=capture&as=csv", `${name}-recording.csv`) },
-        "Save as CSV",
-      ),
+      h("button", { onclick: () => save("capture", "csv", `${name}-recording.csv`) }, "Save as CSV"),
       " ",
       h(
         "button",

@@ -103,6 +103,7 @@ async function send(action, body) {
 // A browser opens six connections to a server, and streams of this and other tabs can occupy all of them. It keeps requests
 // with credentials apart from those without, so these actions have connections of their own. EPG does not use the credentials.
 const URGENT = new Set(["stop", "respond", "move", "enable"]);
+const PATIENCE = 5000; // ms after which such a request gives its connection up
 
 // Does an action on a running target at once: it does not wait for other actions. Returns the answer, or the error if it
 // was refused: {error: {message, hint}}.
@@ -113,22 +114,27 @@ export async function ask(action, body = {}) {
       credentials: URGENT.has(action) ? "same-origin" : "omit",
       headers: { "Content-Type": "application/json" },
       body: JSON.stringify(body),
+      signal: URGENT.has(action) ? AbortSignal.timeout(PATIENCE) : null,
     });
-    return await answer.json();
+    return answer.status === 204 ? {} : await answer.json();
   } catch {
     return { error: { message: "EPG does not answer", hint: "look at the robot" } };
   }
 }
 
-// A function that does an action as `ask` does, but not while `most` earlier ones have no answer. Actions that are repeated
-// then leave connections free for others, and do not queue up for a server that stands still: it would do them late.
+// A function that does an action as `ask` does, but not while `most` earlier ones have no answer: then it returns null.
+// Actions that are repeated then leave connections free for others, and do not queue up for a server that stands still: it
+// would do them late.
 export function askRepeatedly(action, most) {
   let waiting = 0;
-  return async (body) => {
-    if (waiting === most) return;
+  return async (body = {}) => {
+    if (waiting === most) return null;
     waiting++;
-    await ask(action, body);
-    waiting--;
+    try {
+      return await ask(action, body);
+    } finally {
+      waiting--;
+    }
   };
 }
 
@@ -177,7 +183,9 @@ async function get(address) {
 }
 
 async function request(address, options = {}) {
-  const answer = await fetch(address, { credentials: "omit", ...options, headers: { ...options.headers, ...sign() } });
+  // The browser's cache must not be asked: there, equal addresses of several tabs wait for each other.
+  const headers = { ...options.headers, ...sign() };
+  const answer = await fetch(address, { cache: "no-store", credentials: "omit", ...options, headers });
   if (answer.status === 401) lock();
   return answer;
 }

@@ -2,7 +2,7 @@
 // The timing of the control loop of a running target: the numbers of the console's command `stats`, and histograms of
 // the rows that were streamed since the connection.
 
-import { h } from "./dom.js";
+import { h, id } from "./dom.js";
 import { ask } from "./server.js";
 import { draw } from "./ui.js";
 
@@ -61,8 +61,15 @@ function table(period) {
   const rows = Object.entries(times).map(([name, text]) => {
     const ns = Number(shown[`${name}_ns`]);
     const share = `${Number(((100 * ns) / period).toPrecision(2))} %`;
-    const label = `${text}: ${share} of the control period`;
-    const bar = h("meter", { "aria-label": label, min: 0, max: period, high: period * 0.8, value: ns });
+    const valuetext = `${share} of the control period`;
+    const bar = h("meter", {
+      "aria-label": text,
+      "aria-valuetext": valuetext,
+      min: 0,
+      max: period,
+      high: period * 0.8,
+      value: ns,
+    });
     return [text, `${Number((ns / 1000).toPrecision(4))} µs`, share, bar];
   });
   const counts = {
@@ -104,12 +111,13 @@ function histogram(title, found) {
   return h(
     "figure",
     { key: title },
-    h("figcaption", h("b", title), ` ${text}`),
+    h("figcaption", h("b", title), h("span", { id: id("durations", title) }, ` ${text}`)),
     h(
       "svg.bars",
       {
         role: "img",
-        "aria-label": `Histogram: ${title}, ${text}`,
+        "aria-label": `Histogram: ${title}`,
+        "aria-describedby": id("durations", title),
         viewBox: `0 0 ${counts.length} 1`,
         preserveAspectRatio: "none",
       },

@@ -110,9 +110,13 @@ interface Live {
   opens: boolean;
   /** False: the target has no console, so the page cannot connect with it. */
   console: boolean;
+  /** The port of a target that needs a key, which the user must type; empty: there is none. */
+  locked: string;
   ports: { path: string; device: string }[];
   target: LiveTarget | null;
   problem: Refusal | null;
+  /** A target whose connection was lost, with the last words about its state. */
+  lost: { name: string; state: Record<string, string> } | null;
 }
 
 interface LiveTarget {
@@ -133,9 +137,21 @@ interface LiveTarget {
   signals: { name: string; unit: string; loop: boolean }[];
   /** The recording of every cycle; `number` counts those that can be read. */
   capture: { state: "none" | "recording" | "ready"; rows: number; wanted: number; number: number };
-  setpoints: string[];
+  setpoints: LiveSetpoint[];
   actuators: string[];
   parameters: LiveParameter[];
+}
+
+/** A setpoint with its limits in `unit`, the signal that it follows, and its value after an enabling. */
+interface LiveSetpoint {
+  name: string;
+  unit: string;
+  low: number | null;
+  high: number | null;
+  follows: string;
+  /** A value that was sent before the enabling does not act. */
+  fresh: boolean;
+  starts: number | null;
 }
 
 interface LiveParameter {
@@ -212,6 +228,8 @@ interface End {
   offset: string;
   limits: [string, string] | null;
   unit: string;
+  /** The model input that a setpoint follows; empty if there is none. */
+  follows: string;
   /** The conversion in one line; empty if there is none. */
   text: string;
   /** The conversion that the component does before. */
@@ -221,6 +239,16 @@ interface End {
 }
 
 /** A message of EPG or of the build. Messages of compilers have no notes; some have no place. */
+/** The rows of the stream that can be saved: recorded since a time in s since 1970, sizes in bytes. */
+interface KeptRows {
+  since: number;
+  size: number;
+  most: number;
+  problem: string;
+  /** The part of a file that has been written; null: none is being written. */
+  saving: number | null;
+}
+
 interface Message extends Place {
   id: string;
   severity: "error" | "warning" | "note";
@@ -236,6 +264,17 @@ interface Message extends Place {
   path?: string[];
   /** In a system: the targets whose files have the mistake. */
   targets?: string[];
+  /** The changes that the hint proposes and that the page can make. Of several, the user chooses one. */
+  edits?: Edit[];
+}
+
+/** `new` in place of `old`, the text from `line` and `column` to `end_line` and `end`. An insertion has an empty `old`. */
+interface Edit extends Place {
+  end_line: number;
+  end: number;
+  old: string;
+  new: string;
+  sentence: string;
 }
 
 interface Place {
@@ -476,6 +515,8 @@ interface Actions {
   disconnect: { port: string };
   /** Without ports, all proposals are accepted. */
   accept: { ports?: string[] };
+  /** Makes the edit of a message. */
+  apply: { file: string; line: number; column: number; new: string };
   leave_out: Nothing;
   unset: { paths: string[][] };
   choose_pin: { component: string; signal: string; pin: string };

@@ -9,12 +9,12 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from epg.catalog.catalog import load_catalog
 from epg.connect.literal_calls import FILE, LiteralCalls
 from epg.connect.projects import Job, find_jobs
-from epg.dataclass import dataclass
-from epg.diagnostics import Diagnostics
-from epg.project import load_configuration
+from epg.generator.catalog.catalog import load_catalog
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.project import load_configuration
 
 FOLDER = "simulation"
 """The folder in which ``epg new`` writes the project that simulates the target of a board."""
@@ -51,9 +51,9 @@ def simulations_of(job: Job) -> Simulations:
         hint = "'epg simulate' runs all of its targets: docs/simulation.md"
         return Simulations(problem="this target is part of a system, which is simulated as a whole", hint=hint)
     jobs = [each for each in (job, *_beside(job)) if _simulates(each)]
-    found = tuple(simulation for each in jobs for simulation in _of_project(each))
-    if found:
-        return Simulations(found)
+    simulations = tuple(simulation for each in jobs for simulation in _of_project(each))
+    if simulations:
+        return Simulations(simulations)
     if jobs:
         folder = jobs[0].source_dir or jobs[0].request.beside
         problem = f"the project has no scenario, such as {folder / SCENARIO}"
@@ -82,7 +82,7 @@ def _simulates(job: Job) -> bool:
 def _of_project(job: Job) -> list[Simulation]:
     """The simulations in simulated time that calls of epg_add_simulation() add; else that of ``scenario.yaml``."""
     folder = job.source_dir or job.request.beside
-    found = []
+    simulations = []
     for call in LiteralCalls(folder).calls:
         texts = [word.text for word in call.words]
         if call.name != "epg_add_simulation" or "REALTIME" in texts or None in texts:
@@ -90,7 +90,7 @@ def _of_project(job: Job) -> list[Simulation]:
         values = dict(zip(texts[1::2], texts[2::2]))
         executable, scenario = values.get("EXECUTABLE"), values.get("SCENARIO")
         if executable in job.executables and executable and scenario:
-            found.append(Simulation(texts[0] or "", job, executable, call.folder / scenario))
-    if not found and job.executables and (folder / SCENARIO).is_file():
-        found.append(Simulation(Path(SCENARIO).stem, job, job.executables[0], folder / SCENARIO))
-    return found
+            simulations.append(Simulation(texts[0] or "", job, executable, call.folder / scenario))
+    if not simulations and job.executables and (folder / SCENARIO).is_file():
+        simulations.append(Simulation(Path(SCENARIO).stem, job, job.executables[0], folder / SCENARIO))
+    return simulations

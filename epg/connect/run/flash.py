@@ -13,21 +13,21 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import ClassVar
 
-from epg.bootstrap import cache_folder
-from epg.catalog.platform import Flashing
 from epg.connect.activity import Activity, Outcome, message_of
-from epg.connect.build.messages import Message, Messages
+from epg.connect.build.build_messages import BuildMessage, Messages
 from epg.connect.projects import Job
-from epg.dataclass import dataclass
-from epg.diagnostics import Diagnostics, UserError
-from epg.resolve.application import Application
-from epg.source import Span
+from epg.generator.bootstrap import cache_folder
+from epg.generator.catalog.platform import Flashing
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostics, UserError
+from epg.generator.resolve.application import Application
+from epg.generator.source import Span
+from epg.generator.tools.find_tool import Surroundings
+from epg.generator.tools.remedy import command_for
+from epg.generator.tools.tools import load_tools
+from epg.generator.tools.uf2_drives import Uf2Drive, copy_to_drive, uf2_drives
+from epg.generator.tools.usb_boards import attached
 from epg.system import flash
-from epg.tools.find_tool import Surroundings
-from epg.tools.remedy import command_for
-from epg.tools.tools import load_tools
-from epg.tools.uf2_drives import Uf2Drive, copy_to_drive, uf2_drives
-from epg.tools.usb_boards import attached
 
 _NO_ACCESS = re.compile(r"LIBUSB_ERROR_ACCESS|was unable to connect|ermission denied", re.IGNORECASE)
 """What picotool and OpenOCD print if the user may not use a device."""
@@ -44,7 +44,7 @@ WEST = "west"
 
 
 @dataclass(frozen=True)
-class Board:
+class FlashableBoard:
     """One board that can be written.  ``id`` distinguishes it, ``shown`` describes it to the user.
 
     It has a ``drive``, or the ``job`` for the tool of its family; else west finds it.
@@ -54,7 +54,7 @@ class Board:
     shown: str
     image: Path
     drive: Uf2Drive | None = None
-    job: flash.Job | None = None
+    job: flash.FlashJob | None = None
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class Boards:
     ``program`` is the program of the tool, ``folder`` the build folder, and ``tool`` the name of the tool.
     """
 
-    found: tuple[Board, ...] = ()
+    found: tuple[FlashableBoard, ...] = ()
     problem: str = ""
     hint: str = ""
     tool: str = ""
@@ -94,8 +94,8 @@ def boards_for(job: Job, application: Application, products: Sequence[Path]) -> 
     return Boards(problem="EPG does not know how this target is written to its board", hint="download the file")
 
 
-def _on_drive(drive: Uf2Drive, image: Path) -> Board:
-    return Board(f"drive {drive.folder}", f"{drive.board}, the drive {drive.folder}", image, drive=drive)
+def _on_drive(drive: Uf2Drive, image: Path) -> FlashableBoard:
+    return FlashableBoard(f"drive {drive.folder}", f"{drive.board}, the drive {drive.folder}", image, drive=drive)
 
 
 def _by_tool(job: Job, application: Application, flashing: Flashing, image: Path) -> Boards:
@@ -120,10 +120,10 @@ def _by_tool(job: Job, application: Application, flashing: Flashing, image: Path
     boards = []
     for device in devices:
         arguments, serial, shown = flash.board_of(device, flashing)
-        work = flash.Job(
+        work = flash.FlashJob(
             job.request.name, Span(str(image)), application, flashing, image, arguments, serial, f"'{shown}'"
         )
-        boards.append(Board(shown, f"{device.product or target_title(application)} {shown}", image, job=work))
+        boards.append(FlashableBoard(shown, f"{device.product or target_title(application)} {shown}", image, job=work))
     return Boards(tuple(boards), tool=flashing.tool, program=program)
 
 
@@ -139,7 +139,7 @@ def _by_west(job: Job, image: Path) -> Boards:
     if not program:
         return Boards(problem="west was not found", hint=f"get it: {command_for(tools[WEST], where, tools)}")
     build = Path(os.path.abspath(job.build_dir or image.parent.parent))
-    board = Board(WEST, "the board that 'west flash' finds", image)
+    board = FlashableBoard(WEST, "the board that 'west flash' finds", image)
     return Boards((board,), tool=WEST, program=program, folder=build)
 
 
@@ -151,12 +151,12 @@ class FlashRun(Activity):
 
     more: ClassVar = {"file": "", "board": "", "can_replace": False, "can_try": False}
 
-    def start(self, boards: Boards, board: Board, *, replace: bool) -> None:
+    def start(self, boards: Boards, board: FlashableBoard, *, replace: bool) -> None:
         """Writes to ``board``.  With ``replace``, the program of another target is overwritten."""
         self.shown |= {"file": str(board.image), "board": board.shown}
         self.begin(lambda: self._flash(boards, board, replace))
 
-    def _flash(self, boards: Boards, board: Board, replace: bool) -> Outcome:
+    def _flash(self, boards: Boards, board: FlashableBoard, replace: bool) -> Outcome:
         shown = {"file": str(board.image), "board": board.shown}
         if board.drive is not None:
             outcome = self._copy(board.image, board.drive)
@@ -171,10 +171,12 @@ class FlashRun(Activity):
         problem = copy_to_drive(image, drive, lambda done, total: self.progress("write", done, total))
         hint = "hold BOOTSEL while you plug the board in, and flash again"
         return (
-            Outcome("failed", [Message("error", problem, hint=hint, id="flash-failed")]) if problem else Outcome("done")
+            Outcome("failed", [BuildMessage("error", problem, hint=hint, id="flash-failed")])
+            if problem
+            else Outcome("done")
         )
 
-    def _by_tool(self, boards: Boards, job: flash.Job, replace: bool) -> Outcome:
+    def _by_tool(self, boards: Boards, job: flash.FlashJob, replace: bool) -> Outcome:
         diagnostics = Diagnostics()
         programs = {boards.tool: boards.program}
         try:
@@ -182,15 +184,18 @@ class FlashRun(Activity):
         except flash.UnusableTool:
             text = f"{boards.tool} cannot reach boards: it was built without USB"
             hint = "hold BOOTSEL while you plug the board in: then its drive is used"
-            return Outcome("failed", [Message("error", text, hint=hint, id="tool-missing")])
+            return Outcome("failed", [BuildMessage("error", text, hint=hint, id="tool-missing")])
         except UserError:
-            found = [message_of(each.data()) for each in diagnostics]
+            messages_of_tool = [message_of(each.data()) for each in diagnostics]
             refused = _NO_ACCESS.search("\n".join(self.lines(0)))
-            hints = {each.id: _HINTS.get(each.id, each.hint) for each in found}
+            hints = {each.id: _HINTS.get(each.id, each.hint) for each in messages_of_tool}
             if refused:
                 hints |= dict.fromkeys(("board-not-found", "flash-failed"), _ACCESS_HINT.format(tool=boards.tool))
-            messages = [Message("error", each.message, hint=hints.get(each.id, ""), id=each.id) for each in found]
-            other = any(each.id == "other-program" for each in found)
+            messages = [
+                BuildMessage("error", each.message, hint=hints.get(each.id, ""), id=each.id)
+                for each in messages_of_tool
+            ]
+            other = any(each.id == "other-program" for each in messages_of_tool)
             return Outcome("failed", messages, {"can_replace": other})
         return Outcome("done")
 

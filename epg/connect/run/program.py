@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import ClassVar
 
 from epg.connect.activity import Activity, Outcome
-from epg.connect.build.messages import Message
+from epg.connect.build.build_messages import BuildMessage
 
 LONGEST = 86400
 """The longest time in seconds that a program runs: a program that is no ROS 2 node needs a duration."""
@@ -48,7 +48,7 @@ class ProgramRun(Activity):
             return Outcome("done")
         said = [line for line in self.lines(0) if line.strip()][-_TAIL:]
         text = "\n".join([f"'{program.name}' ended with status {status}", *said])
-        return Outcome("failed", [Message("error", text, id="run-failed")])
+        return Outcome("failed", [BuildMessage("error", text, id="run-failed")])
 
 
 def command_of(program: Path, port: Path | None) -> tuple[str, ...]:

@@ -18,13 +18,12 @@ from typing import Any, ClassVar
 
 import epg
 from epg.connect.activity import Activity, Outcome, message_of
-from epg.connect.build.messages import Message, Messages
+from epg.connect.build.build_messages import BuildMessage, Messages
+from epg.connect.build.build_run import build
 from epg.connect.build.plan import make_plan
-from epg.connect.build.products import Made
-from epg.connect.build.run import build
 from epg.connect.run.find_simulation import Simulation
-from epg.diagnostics import Diagnostics, UserError
-from epg.graph.tracking import draw_tracking
+from epg.generator.diagnostics import Diagnostics, UserError
+from epg.graph.tracking_picture import draw_tracking
 from epg.simulate.load_scenario import load_scenario
 
 
@@ -49,13 +48,9 @@ class SimulationRun(Activity):
         load_scenario(simulation.scenario, diagnostics)  # reports mistakes before the build
         if diagnostics.has_errors:
             raise UserError(diagnostics)
-        outcome, made = build(self, simulation.job, anyway=anyway)
-        if outcome.state != "done":
-            return outcome
-        program = program_of(simulation, made)
+        outcome, program = build_program(self, simulation, anyway)
         if program is None:
-            text = f"the build has not made the program '{simulation.executable}'"
-            return Outcome("failed", [Message("error", text, id="simulation-failed")])
+            return outcome
         self.read_messages(Messages((simulation.scenario.parent,)))
         output = Path(os.path.abspath(simulation.job.build_dir or simulation.scenario.parent / "build"))
         answer = _Answer(self.read)
@@ -86,10 +81,17 @@ def commands_of(simulation: Simulation) -> tuple[tuple[str, ...], ...]:
     return (simulate_command(build_dir / simulation.executable, simulation.scenario, build_dir),)
 
 
-def program_of(simulation: Simulation, made: list[Made]) -> Path | None:
-    """The program of the simulation among the products of its build.  Zephyr's has a name of its own."""
+def build_program(run: Activity, simulation: Simulation, anyway: bool) -> tuple[Outcome, Path | None]:
+    """Builds the program of a simulation, which is None after a failure.  Zephyr's has a name of its own."""
+    outcome, made = build(run, simulation.job, anyway=anyway)
+    if outcome.state != "done":
+        return outcome, None
     paths = [each.path for each in made]
-    return next((path for path in paths if path.stem == simulation.executable), paths[0] if paths else None)
+    program = next((path for path in paths if path.stem == simulation.executable), paths[0] if paths else None)
+    if program is None:
+        text = f"the build has not made the program '{simulation.executable}'"
+        outcome = Outcome("failed", [BuildMessage("error", text, id="simulation-failed")])
+    return outcome, program
 
 
 class _Answer:

@@ -11,12 +11,12 @@ from typing import Any
 from epg.connect.session import Refused, Session
 from epg.connect.terminal.console import Console
 from epg.connect.terminal.message import say_refused
-from epg.new_project import project_name
+from epg.new.new_project import project_name
 
 WAIT = 60.0
 """Seconds to wait for the list of configurations; reading it takes about one."""
 
-Choice = Mapping[str, Any]
+PredefinedData = Mapping[str, Any]
 
 
 class Left(Exception):
@@ -54,7 +54,7 @@ def create_project(session: Session, console: Console) -> None:
             say_refused(problem, console)
 
 
-def _choose(configurations: Sequence[Choice], console: Console) -> Choice:
+def _choose(configurations: Sequence[PredefinedData], console: Console) -> PredefinedData:
     """Asks for one configuration by its number or name.  Any other text is a filter for the list."""
     possible = sorted((choice for choice in configurations if choice["possible"]), key=_relevance)
     shown = possible
@@ -64,24 +64,29 @@ def _choose(configurations: Sequence[Choice], console: Console) -> Choice:
     while True:
         only = shown[0]["name"] if len(shown) == 1 else ""
         answer = console.ask("number, name, part of a name to filter, or q", only)
-        named = [choice for choice in possible if choice["name"] == answer]
-        if named:
-            return named[0]
+        named = {choice["name"]: choice for choice in possible}.get(answer)
+        if named is not None:
+            return named
         if answer == "q":
             raise Left
         if answer.isdecimal() and 0 < int(answer) <= len(possible):
             return possible[int(answer) - 1]
-        words = answer.casefold().split()
-        fitting = [choice for choice in possible if all(word in _text(choice) for word in words)]
-        if not fitting:
-            refused = [choice for choice in configurations if choice["name"] == answer]
-            console.say(f"{answer}: {refused[0]['reason']}" if refused else f"no target matches '{answer}'")
-            continue
-        shown = fitting
-        _list(shown, possible, console)
+        fitting = _fitting(answer, possible)
+        if fitting:
+            shown = fitting
+            _list(shown, possible, console)
+        else:
+            reason = {choice["name"]: choice["reason"] for choice in configurations}.get(answer)
+            console.say(f"no target matches '{answer}'" if reason is None else f"{answer}: {reason}")
 
 
-def _list(shown: Sequence[Choice], possible: Sequence[Choice], console: Console) -> None:
+def _fitting(answer: str, choices: Sequence[PredefinedData]) -> list[PredefinedData]:
+    """The choices that contain all words of ``answer``."""
+    words = answer.casefold().split()
+    return [choice for choice in choices if all(word in _text(choice) for word in words)]
+
+
+def _list(shown: Sequence[PredefinedData], possible: Sequence[PredefinedData], console: Console) -> None:
     rows = [
         (str(possible.index(choice) + 1).rjust(3), choice["name"], _matches(choice), _description(choice))
         for choice in shown
@@ -89,21 +94,21 @@ def _list(shown: Sequence[Choice], possible: Sequence[Choice], console: Console)
     console.table(("", "", "ports", ""), rows)
 
 
-def _relevance(choice: Choice) -> tuple[bool, int]:
+def _relevance(choice: PredefinedData) -> tuple[bool, int]:
     """The key for sorting: robots with many ports of the model come first, robots with none of them last."""
     return bool(choice["robot"]) and not choice["matches"], -choice["matches"] if choice["robot"] else 0
 
 
-def _matches(choice: Choice) -> str:
+def _matches(choice: PredefinedData) -> str:
     """The number of ports with a component of matching name; "topics" for a target alone, where ports become topics."""
     return f"{choice['matches']}/{choice['ports']}" if choice["robot"] else "topics"
 
 
-def _description(choice: Choice) -> str:
+def _description(choice: PredefinedData) -> str:
     needed = f"; needs {', '.join(choice['missing'])}" if choice["missing"] else ""
     return f"{choice['board']}{needed}"
 
 
-def _text(choice: Choice) -> str:
+def _text(choice: PredefinedData) -> str:
     """The text that a filter searches."""
     return " ".join(str(choice[key]) for key in ("name", "summary", "robot", "board", "platform")).casefold()

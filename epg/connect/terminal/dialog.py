@@ -11,11 +11,11 @@ from __future__ import annotations
 from typing import TextIO
 
 from epg.connect.session import Refused, Session
-from epg.connect.terminal.build import ask_to_build, build
+from epg.connect.terminal.build_progress import ask_to_build, build
 from epg.connect.terminal.console import Console, Ended
 from epg.connect.terminal.create import Left, create_project
 from epg.connect.terminal.message import say_refused
-from epg.connect.terminal.ports import Ports
+from epg.connect.terminal.port_questions import Ports
 from epg.connect.terminal.talk import Talk
 from epg.connect.terminal.text import is_open, ports_of
 

@@ -40,10 +40,10 @@ def _excerpt(place: Mapping[str, Any], session: Session) -> list[str]:
     if not place["line"] or not place["column"]:
         return []
     try:
-        found = session.source(place["file"], place["line"])
+        excerpt = session.source(place["file"], place["line"])
     except Refused:
         return []
-    text = str(found["lines"][place["line"] - found["first"]]) if found["line"] == place["line"] else ""
+    text = str(excerpt["lines"][place["line"] - excerpt["first"]]) if excerpt["line"] == place["line"] else ""
     before = "".join("\t" if char == "\t" else " " for char in text[: place["column"] - 1])
     return [f"{place['line']:5d} | {text}", f"{'':5} | {before}^"] if text.isprintable() else []
 

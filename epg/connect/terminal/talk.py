@@ -7,14 +7,17 @@ from collections.abc import Iterable, Sequence
 from operator import itemgetter
 from typing import Any
 
-from epg.connect.session import Refused, Session, State
+from epg.connect.json_data import State
+from epg.connect.session import Refused, Session
 from epg.connect.terminal.console import Console
 from epg.connect.terminal.create import Left
 from epg.connect.terminal.message import say_message, say_refused
 from epg.connect.terminal.text import ModelPort
 
 _key = itemgetter("id", "file", "message")
-OF_OPEN_PORTS = frozenset(("unbound-input", "unbound-output", "needs-bound", "unused-component"))
+OF_OPEN_PORTS = frozenset(
+    ("unbound-input", "unbound-output", "needs-bound", "unused-component", "unused-input", "motor-not-driven")
+)
 """Ids of messages that are not shown while the user still connects ports."""
 
 

@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from epg.dataclass import dataclass
+from epg.connect.json_data import State
+from epg.generator.dataclass import dataclass
 
-State = Mapping[str, Any]
 OPEN, UNCONNECTED = "(open)", "(unconnected)"
 
 

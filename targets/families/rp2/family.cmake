@@ -162,7 +162,7 @@ Write pico_enable_stdio_usb(${target} 0), or choose another transport: SET commu
   endif()
 endfunction()
 
-# Puts the code and the tables of the control cycle into RAM.
+# Puts the code and the tables of the control cycle into RAM, and the communication that all middlewares share.
 #
 # The linker scripts of the Pico SDK put code and constants into flash, except those of archives whose name ends in
 # libm.a, libgcc.a or (in part) libc.a.  These go into RAM, as "floating point and time critical code".  The model, the
@@ -171,8 +171,11 @@ endfunction()
 #
 # This needs no linker script of EPG, works for all types of binary, and lets the linker remove unused functions.
 # in_ram.ld stops the link with an error if the user's linker script puts the control cycle into flash.
+#
+# A turn of communication uses more code than the cache of flash holds.  Half of its time was spent waiting for flash, and
+# the longest turn changed by a quarter with the places of functions, until the shared part (21 kB) was in RAM.
 function(_epg_rp2_in_ram name)
-  _epg_mcu_name_archives(_libm ${name} epg_runtime ${EPG_MODELS})
+  _epg_mcu_name_archives(_libm ${name} epg_runtime epg_variables epg_communication ${EPG_MODELS})
 endfunction()
 
 # Adds the SDK's libraries, definitions and linker options to <library>, the port layer of all targets.
@@ -217,7 +220,7 @@ function(_epg_rp2_usb_library)
   endif()
   set(folder "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/usb")
   add_library(epg_pico_usb INTERFACE)
-  cmake_path(SET shared NORMALIZE "${folder}/../../../platforms/mcu/usb")
+  cmake_path(SET shared NORMALIZE "${folder}/../../../mcu/usb")
   target_sources(epg_pico_usb INTERFACE "${folder}/device.c" "${folder}/microsoft.c" "${folder}/reset.c"
     "${shared}/descriptors.c" "${shared}/serial.c")
   target_include_directories(epg_pico_usb INTERFACE "${folder}/include")
@@ -228,7 +231,7 @@ endfunction()
 # the SDK's text of the serial number.
 function(_epg_rp2_small_sources executable)
   set(folder "${CMAKE_CURRENT_FUNCTION_LIST_DIR}")
-  set(sources "${folder}/src/flash.c" "${folder}/../../platforms/mcu/src/store.c"
+  set(sources "${folder}/src/flash.c" "${folder}/../../mcu/src/store.c"
     "${PICO_SDK_PATH}/src/rp2_common/pico_unique_id/unique_id.c")
   foreach(library epg_pico_usb tinyusb_device_base tinyusb_common_base)
     if(TARGET ${library})

@@ -34,14 +34,18 @@ static const handler_t handlers[] = {
 
 static epg_console_session_t session;
 
-/** Handles the start or the end of a connection: clears all state of the last one, and stops a jog. */
+/**
+ * Handles the start or the end of a connection: ends all output of the last one, and stops a jog.  Input is kept, because
+ * the end of a connection can be known before the bytes that were sent before it.
+ */
 static void begin_session(bool connected)
 {
     if (session.jogging) {
-        epg_control_request(session.target->control, false);
+        epg_gate_end_move(session.target->control);
         session.jogging = false;
     }
-    session.input = (epg_console_input_t){0};
+    epg_console_scan_begin_line(&session.input.scan);
+    session.input.echo = false;
     epg_console_end_frames(&session);
     epg_console_output_clear(&session.output);
     session.list = NULL;
@@ -60,6 +64,9 @@ static void begin_session(bool connected)
     epg_console_node(&session);
     epg_console_word(&session.output, "epg", session.target->version);
     epg_console_word(&session.output, "hash", session.target->hash);
+    if (session.has_status) {
+        epg_console_stop(&session, &session.status);
+    }
     epg_console_end_or_drop(&session.output);
 }
 
@@ -71,57 +78,62 @@ static void poll_status(void)
         return;
     }
     const bool changed =
-        session.has_status && (status.enabled != session.status.enabled || status.fault != session.status.fault);
+        session.has_status && (status.enabled != session.status.enabled || status.fault != session.status.fault ||
+                               (session.output.framed && status.stop_number != session.status.stop_number));
     session.status = status;
     session.has_status = true;
     if (changed && session.connected) {
         epg_console_begin(&session.output, "state");
         epg_console_count(&session.output, "enabled", status.enabled ? 1U : 0U);
         epg_console_fault(&session, &status);
+        epg_console_stop(&session, &status);
         epg_console_end_or_drop(&session.output);
+    }
+}
+
+/** Returns true if the event has come that the next command waits for. */
+static bool has_come(void)
+{
+    const uint32_t cycles = session.has_status ? session.status.statistics.cycles - session.wait_cycles : 0U;
+    switch (session.wait) {
+    case EPG_CONSOLE_APPLYING:
+        return epg_parameters_idle(session.target->application->parameters);
+    case EPG_CONSOLE_ENDING_STREAM:
+        return epg_telemetry_idle(session.target->application->telemetry);
+    case EPG_CONSOLE_ENABLING:
+        return cycles >= (session.status.enabled ? EPG_REQUEST_SEEN : EPG_REQUEST_OVER);
+    default:
+        return cycles >= EPG_REQUEST_SEEN;
     }
 }
 
 /** Answers the command that the next command waits for, if it has taken effect. */
 static void poll_wait(void)
 {
-    bool over = false;
+    bool refused = false;
     const char *problem = NULL;
-    const bool cycled = session.has_status && session.status.statistics.cycles - session.wait_cycles >= 2U;
-    switch (session.wait) {
-    case EPG_CONSOLE_READY:
+    if (session.wait == EPG_CONSOLE_READY) {
         return;
-    case EPG_CONSOLE_APPLYING:
-        over = epg_parameters_idle(session.target->application->parameters);
-        break;
-    case EPG_CONSOLE_ENABLING:
-        over = cycled;
-        problem = session.status.enabled ? NULL : "refused:";
-        break;
-    case EPG_CONSOLE_DISABLING:
-        over = cycled;
-        problem = session.status.enabled ? "was enabled again" : NULL;
-        break;
-    case EPG_CONSOLE_ENDING_STREAM:
-        over = epg_telemetry_idle(session.target->application->telemetry);
-        break;
     }
-    if (!over && session.now_ns - session.wait_since_ns > (uint64_t)NO_CYCLE_MS * MS) {
-        over = true;
+    if (has_come()) {
+        const bool enables = session.wait == EPG_CONSOLE_ENABLING && !session.status.enabled;
+        refused = enables || session.wait == EPG_CONSOLE_REFUSING;
+        problem = session.wait == EPG_CONSOLE_DISABLING && session.status.enabled ? "was enabled again" : NULL;
+    } else if (session.now_ns - session.wait_since_ns > (uint64_t)NO_CYCLE_MS * MS) {
         problem = "the control loop does not run";
-    }
-    if (!over) {
+    } else {
         return;
     }
-    if (problem == NULL) {
+    if (problem == NULL && !refused) {
         epg_console_ok(&session, session.wait_command);
     } else {
         epg_console_begin(&session.output, "error ");
         epg_console_text(&session.output, session.wait_command);
         epg_console_text(&session.output, " ");
-        epg_console_text(&session.output, problem);
-        if (session.wait == EPG_CONSOLE_ENABLING && cycled) {
-            epg_console_fault(&session, &session.status);
+        if (refused) {
+            epg_console_refused(&session);
+        } else {
+            epg_console_text(&session.output, problem);
         }
     }
     epg_console_end_or_drop(&session.output);
@@ -160,28 +172,30 @@ static const handler_t *find_handler(const char *name)
     return NULL;
 }
 
+/** Returns the first word of a line, and its length. */
+static const char *first_word(const char *line, size_t *length)
+{
+    const char *word = line + strspn(line, " \t");
+    *length = strcspn(word, " \t");
+    return word;
+}
+
 /** Returns true for a line that must act at once, even during another answer: setpoints, enable, disable. */
 static bool urgent(void)
 {
-    const char *word = session.input.line;
-    while (*word == ' ' || *word == '\t') {
-        word++;
-    }
-    size_t length = 0;
-    while (word[length] != '\0' && word[length] != ' ' && word[length] != '\t') {
-        if (word[length++] == '=') {
-            return true;
-        }
-    }
-    return (length == 6 && memcmp(word, "enable", length) == 0) ||
-           (length == 7 && memcmp(word, "disable", length) == 0);
+    size_t length;
+    const char *word = first_word(session.input.line, &length);
+    return memchr(word, '=', length) != NULL || (length == 6 && memcmp(word, "enable", length) == 0) ||
+           (length == 7 && memcmp(word, "disable", length) == 0) || session.input.is_stop;
 }
 
 static void run_line(void)
 {
     epg_console_command_t command;
     session.output.tag = session.input.tag;
-    if (session.input.too_long) {
+    if (session.input.is_stop) { /* whatever was left of a line before it */
+        epg_console_disable(&session, NULL);
+    } else if (session.input.too_long) {
         epg_console_error(&session, "line", "is too long", NULL);
     } else if (session.input.no_text) {
         epg_console_error(&session, "line", "contains bytes that are not text", NULL);
@@ -236,17 +250,12 @@ static void start(const epg_target_t *target, const epg_stream_t *stream)
 static void poll(uint64_t now_ns)
 {
     session.now_ns = now_ns;
+    session.clean = epg_gate_poll(session.target->control, EPG_GATE_CONSOLE);
     const bool connected = session.stream->connected(session.stream->context);
     if (connected != session.connected) {
         begin_session(connected);
     }
     poll_status();
-    if (!connected) {
-        char ignored[64];
-        (void)session.stream->read(session.stream->context, ignored, sizeof ignored);
-        epg_console_output_clear(&session.output);
-        return;
-    }
     session.output.tag = session.live.wait_tag;
     poll_wait();
     session.output.tag = session.live.jog_tag;
@@ -254,11 +263,16 @@ static void poll(uint64_t now_ns)
     session.output.tag = 0;
     epg_console_poll_capture(&session);
     poll_input();
+    epg_console_poll_scan(&session);
     session.output.tag = session.live.list_tag;
     poll_list();
     session.output.tag = 0;
     epg_console_poll_watch(&session);
     epg_console_poll_live(&session);
+    if (!connected) { /* commands act, but nobody reads their answers */
+        epg_console_output_clear(&session.output);
+        session.list = NULL;
+    }
     if (session.output.used == 0 || epg_console_send(&session.output, session.stream)) {
         session.progress_ns = now_ns;
     }

@@ -17,8 +17,13 @@ uint32_t epg_console_crc(uint32_t crc, uint8_t byte)
     return crc >> 4 ^ remainders[crc & 15U];
 }
 
+/** CRC-32 of any message that is followed by its own CRC-32, before the last inversion. */
+#define RESIDUE UINT32_C(0xDEBB20E3)
+
 static void append(epg_console_frame_t *frame, uint8_t *bytes, size_t size, uint8_t byte)
 {
+    /* The member is inverted, so that a frame that is all zero is a valid beginning. */
+    frame->crc = ~epg_console_crc(~frame->crc, byte);
     if (frame->length == size) {
         frame->too_long = true;
     } else {
@@ -26,44 +31,24 @@ static void append(epg_console_frame_t *frame, uint8_t *bytes, size_t size, uint
     }
 }
 
-/** Returns true if the message is complete, and its CRC is right. */
-static bool is_right(epg_console_frame_t *frame, const uint8_t *bytes)
+/** Ends the message.  Afterwards, the byte that ended a damaged one can be the beginning of the next one. */
+static epg_console_frame_part_t end(epg_console_frame_t *frame)
 {
-    if (frame->too_long || frame->left > 0 || frame->length <= EPG_CONSOLE_FRAME_CRC) {
-        return false;
-    }
+    const bool empty = !frame->open || frame->code == 0;
+    const bool whole = !empty && frame->left == 0 && frame->length > EPG_CONSOLE_FRAME_CRC && ~frame->crc == RESIDUE;
+    const bool too_long = frame->too_long;
     const size_t length = frame->length - EPG_CONSOLE_FRAME_CRC;
-    uint32_t crc = EPG_CONSOLE_CRC_START;
-    uint32_t sent = 0;
-    for (size_t i = 0; i < length; i++) {
-        crc = epg_console_crc(crc, bytes[i]);
+    *frame = (epg_console_frame_t){.open = !whole, .length = whole ? length : 0};
+    if (whole) {
+        return too_long ? EPG_CONSOLE_FRAME_TOO_LONG : EPG_CONSOLE_FRAME_WHOLE;
     }
-    for (size_t i = 0; i < EPG_CONSOLE_FRAME_CRC; i++) {
-        sent |= (uint32_t)bytes[length + i] << 8U * i;
-    }
-    frame->length = length;
-    return sent == (crc ^ EPG_CONSOLE_CRC_START);
-}
-
-static epg_console_frame_part_t end(epg_console_frame_t *frame, const uint8_t *bytes)
-{
-    const bool empty = frame->open && frame->code == 0;
-    const bool right = !empty && frame->open && is_right(frame, bytes);
-    const bool damaged = !empty && frame->open && !right;
-    frame->open = !right;
-    frame->too_long = false;
-    frame->code = 0;
-    frame->left = 0;
-    if (!right) {
-        frame->length = 0;
-    }
-    return right ? EPG_CONSOLE_FRAME_WHOLE : damaged ? EPG_CONSOLE_FRAME_DAMAGED : EPG_CONSOLE_FRAME_MORE;
+    return empty ? EPG_CONSOLE_FRAME_MORE : EPG_CONSOLE_FRAME_DAMAGED;
 }
 
 epg_console_frame_part_t epg_console_frame_take(epg_console_frame_t *frame, uint8_t *bytes, size_t size, uint8_t byte)
 {
     if (byte == 0) {
-        return end(frame, bytes);
+        return end(frame);
     }
     if (frame->left > 0) {
         append(frame, bytes, size, byte);

@@ -8,7 +8,10 @@
 
 #include "epg/middleware.h"
 #include "epg/node.h"
+#include "epg/store.h"
 #include "session.h"
+
+enum { VERSION_ROOM = 384 /* bytes that the last line of `version` needs */ };
 
 static const char *const help[] = {
     "ports                        the names of all ports",
@@ -45,21 +48,31 @@ void epg_console_help(epg_console_session_t *session, const epg_console_command_
 
 static const char *stored_name(const epg_parameters_t *parameters)
 {
-    switch (parameters->stored) {
-    case EPG_STORED_LOADED:
-        return "loaded";
-    case EPG_STORED_FOR_OTHER:
-        return "of_another_model";
-    case EPG_STORED_NOTHING:
-        break;
+    static const char *const words[] = {
+        [EPG_STORED_NOTHING] = "nothing", [EPG_STORED_DAMAGED] = "damaged", [EPG_STORED_FOR_OTHER] = "of_another_model",
+        [EPG_STORED_PARTLY] = "partly",   [EPG_STORED_LOADED] = "loaded",   [EPG_STORED_SAVED] = "saved",
+    };
+    return words[parameters->stored];
+}
+
+/** Names the stored parameters that were refused, as many as the output has room for. */
+static void tell_refused(epg_console_session_t *session)
+{
+    const epg_store_t *store = session->target->store;
+    const char *name = store != NULL ? epg_store_refused(store, 0) : NULL;
+    for (size_t i = 1; name != NULL; i++) {
+        epg_console_begin(&session->output, "refused ");
+        epg_console_text(&session->output, name);
+        epg_console_end_or_drop(&session->output);
+        name = epg_console_output_room(&session->output) > VERSION_ROOM ? epg_store_refused(store, i) : NULL;
     }
-    return "nothing";
 }
 
 void epg_console_version(epg_console_session_t *session, const epg_console_command_t *command)
 {
     const epg_target_t *target = session->target;
     (void)command;
+    tell_refused(session);
     epg_console_ok(session, "version");
     epg_console_word(&session->output, "name", target->application->name);
     epg_console_node(session);
@@ -106,6 +119,20 @@ static const char *connection(const epg_target_t *target)
     return middleware != NULL && middleware->state != NULL ? middleware->state() : NULL;
 }
 
+static void put_state(epg_console_session_t *session)
+{
+    const epg_status_t *status = &session->status;
+    epg_console_output_t *output = &session->output;
+    epg_console_count(output, "enabled", status->enabled ? 1U : 0U);
+    if (status->enabled && status->leased) {
+        epg_console_count(output, "leased", 1U);
+    }
+    epg_console_fault(session, status);
+    epg_console_stop(session, status);
+    epg_console_key(output, "time");
+    epg_console_seconds(output, epg_console_since_start(session, status->time_ns));
+}
+
 /** Line 0 is the target's state.  Then come the counters, the mean computed from them, and the counters of a node. */
 static bool stats_line(epg_console_session_t *session, size_t index)
 {
@@ -118,13 +145,7 @@ static bool stats_line(epg_console_session_t *session, size_t index)
     }
     epg_console_begin(output, "stat");
     if (index == 0) {
-        epg_console_count(output, "enabled", status->enabled ? 1U : 0U);
-        if (status->enabled && status->leased) {
-            epg_console_count(output, "leased", 1U);
-        }
-        epg_console_fault(session, status);
-        epg_console_key(output, "time");
-        epg_console_seconds(output, epg_console_since_start(session, status->time_ns));
+        put_state(session);
     } else if (index <= COUNTERS) {
         const unsigned char *statistics = (const unsigned char *)&status->statistics;
         uint32_t value;
@@ -166,18 +187,51 @@ static void port(epg_console_session_t *session, const char *category, const cha
 }
 
 /** Writes line `*index` of the values of `topics`.  Returns false if there are fewer; subtracts their number then. */
-static bool value_line(epg_console_session_t *session, const char *category, const epg_topic_t *topics, size_t count,
-                       size_t *index)
+static bool publication_line(epg_console_session_t *session, const epg_topic_t *topics, size_t count, size_t *index)
 {
     for (size_t i = 0; i < count; i++) {
         const size_t values = topics[i].role == EPG_TOPIC_VALUES ? topics[i].count : 0;
         if (*index < values) {
-            port(session, category, epg_topic_value_name(&topics[i], *index), "");
+            port(session, "publication", epg_topic_value_name(&topics[i], *index), "");
             return true;
         }
         *index -= values;
     }
     return false;
+}
+
+/** The value that setpoint `index` would have after an enabling now, as far as the communication side knows it. */
+static double start_of(const epg_console_session_t *session, size_t index)
+{
+    const epg_setpoint_t *setpoint = &session->target->application->setpoints[index];
+    const epg_setpoint_sample_t *newest = &session->target->application->received[index];
+    const bool old = setpoint->timeout_ns > 0 && session->now_ns > newest->received_ns &&
+                     session->now_ns - newest->received_ns > setpoint->timeout_ns;
+    if (newest->count == 0 || setpoint->fresh || (old && setpoint->action == EPG_TIMEOUT_DISABLE)) {
+        return setpoint->initial;
+    }
+    return old && setpoint->action == EPG_TIMEOUT_ZERO ? 0.0 : newest->value;
+}
+
+/** Writes the line of setpoint `index`. */
+static void setpoint_line(epg_console_session_t *session, size_t index)
+{
+    const epg_setpoint_t *setpoint = &session->target->application->setpoints[index];
+    epg_console_output_t *output = &session->output;
+    port(session, "setpoint", epg_target_setpoint(session->target, index),
+         setpoint->unit == NULL ? "" : setpoint->unit);
+    if (epg_setpoint_is_limited(setpoint)) {
+        epg_console_value(output, "min", setpoint->minimum);
+        epg_console_value(output, "max", setpoint->maximum);
+    }
+    if (setpoint->follows != NULL) {
+        epg_console_word(output, "follows", setpoint->follows);
+    } else {
+        epg_console_value(output, "starts", start_of(session, index));
+    }
+    if (setpoint->fresh) {
+        epg_console_count(output, "fresh", 1U);
+    }
 }
 
 static const char *const loop_values[EPG_LOOP_VALUES] = {
@@ -194,8 +248,12 @@ static bool ports_line(epg_console_session_t *session, size_t index)
 {
     const epg_target_t *target = session->target;
     const epg_jog_t *jog = target->application->jog;
-    if (value_line(session, "setpoint", target->subscriptions, target->subscription_count, &index) ||
-        value_line(session, "publication", target->publications, target->publication_count, &index)) {
+    if (index < target->application->setpoint_count) {
+        setpoint_line(session, index);
+        return true;
+    }
+    index -= target->application->setpoint_count;
+    if (publication_line(session, target->publications, target->publication_count, &index)) {
         return true;
     }
     if (index < target->signal_count) {

@@ -3,17 +3,16 @@
  * @file
  * Messages in frames, streams of signals, and enabling on a lease.
  */
-#include "live.h"
-
 #include <string.h>
 
+#include "console.h"
 #include "epg/port.h"
 #include "session.h"
 
 enum {
     SILENCE_MS = 2000, /* a program that sends no frame for this time is gone */
     BYTE_MS = 100,     /* a frame in which no byte arrives for this time has ended */
-    LEASE_MS = 300,    /* a lease ends this time after the sending of the newest number that was sent back */
+    LEASE_MS = 300,    /* a lease ends this time after the sending of the newest number that came back */
     NUMBER_MS = 50,    /* time between two numbers */
     FRAMES = 2,        /* frames of several rows per poll */
     LONG_FRAMES = 8,   /* frames of one row per poll */
@@ -232,26 +231,40 @@ static void poll_stream(epg_console_session_t *session)
 
 /* Leases ------------------------------------------------------------------------------------------------------- */
 
-void epg_console_enable_leased(epg_console_session_t *session)
+void epg_console_begin_lease(epg_console_session_t *session)
 {
     session->live.leased = true;
     memset(session->live.sent_ns, 0, sizeof session->live.sent_ns);
     session->live.number_ns = session->now_ns;
-    epg_control_request_leased(session->target->control, session->now_ns + (uint64_t)LEASE_MS * MS);
+    epg_control_extend(session->target->control, session->now_ns + (uint64_t)LEASE_MS * MS);
+}
+
+/** Returns the time LEASE_MS after the sending of `number`; 0: it has passed, or the number was not sent. */
+static uint64_t end_of(const epg_console_session_t *session, uint32_t number)
+{
+    const epg_console_live_t *live = &session->live;
+    const uint64_t sent_ns = live->sent_ns[number % EPG_CONSOLE_NUMBERS];
+    const uint64_t until_ns = sent_ns + (uint64_t)LEASE_MS * MS;
+    const bool counts = sent_ns != 0U && live->number - number < EPG_CONSOLE_NUMBERS && session->now_ns < until_ns;
+    return counts ? until_ns : 0U;
 }
 
 /** Extends the lease, if `number` was sent less than LEASE_MS ago. */
 static void take_response(epg_console_session_t *session, uint32_t number)
 {
     epg_console_live_t *live = &session->live;
-    const uint64_t sent_ns = live->sent_ns[number % EPG_CONSOLE_NUMBERS];
-    const uint64_t until_ns = sent_ns + (uint64_t)LEASE_MS * MS;
+    const uint64_t until_ns = end_of(session, number);
     const bool newer = (int32_t)(number - live->returned) > 0; /* a network can repeat and reorder numbers */
-    if (live->leased && newer && sent_ns != 0U && live->number - number < EPG_CONSOLE_NUMBERS &&
-        session->now_ns < until_ns) {
+    if (live->leased && newer && until_ns != 0U) {
         live->returned = number;
         epg_control_extend(session->target->control, until_ns);
     }
+}
+
+uint64_t epg_console_may_move_until(epg_console_session_t *session, uint32_t number)
+{
+    session->live.moved_ns = session->now_ns + (uint64_t)LEASE_MS * MS;
+    return end_of(session, number);
 }
 
 static void poll_lease(epg_console_session_t *session)
@@ -260,7 +273,7 @@ static void poll_lease(epg_console_session_t *session)
     if (session->has_status && !session->status.enabled && session->wait == EPG_CONSOLE_READY) {
         live->leased = false;
     }
-    if (!live->leased || session->now_ns < live->number_ns) {
+    if ((!live->leased && session->now_ns >= live->moved_ns) || session->now_ns < live->number_ns) {
         return;
     }
     epg_console_begin_frame(&session->output, EPG_CONSOLE_NUMBER);
@@ -335,6 +348,7 @@ void epg_console_take_framed(epg_console_session_t *session, uint8_t byte)
     case EPG_CONSOLE_FRAME_WHOLE:
         take_message(session);
         break;
+    case EPG_CONSOLE_FRAME_TOO_LONG:
     case EPG_CONSOLE_FRAME_DAMAGED:
         break;
     }
@@ -345,7 +359,7 @@ void epg_console_end_frames(epg_console_session_t *session)
     end_stream(session);
     session->output.framed = false;
     session->live.leased = false; /* the lease ends by itself */
-    session->live.frame = (epg_console_frame_t){0};
+    session->live.moved_ns = 0;
 }
 
 void epg_console_poll_live(epg_console_session_t *session)

@@ -9,7 +9,6 @@
 
 #include "epg/decimal.h"
 #include "frame.h"
-#include "live.h"
 
 void epg_console_output_clear(epg_console_output_t *output)
 {

@@ -197,10 +197,15 @@ void epg_console_save(epg_console_session_t *session, const epg_console_command_
     size_t count = 0;
     if (store == NULL) {
         epg_console_error(session, "save", "there is nothing to save", NULL);
-    } else if (!session->has_status || session->status.enabled || session->jogging) {
+        return;
+    }
+    if (!session->has_status || session->status.enabled || session->jogging) {
         epg_console_error(session, "save", "the actuators must be off: disable first", NULL);
-    } else if (!epg_store_save(store, &count)) {
-        epg_console_error(session, "save", "this target cannot store parameters", NULL);
+        return;
+    }
+    const char *problem = epg_store_save(store, &count);
+    if (problem != NULL) {
+        epg_console_error(session, "save", problem, NULL);
     } else {
         epg_console_ok(session, "save");
         epg_console_count(&session->output, "values", (uint32_t)count);

@@ -10,9 +10,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "console.h"
-#include "live.h"
+#include "epg/middleware.h"
 #include "output.h"
+#include "scan.h"
 
 enum {
     EPG_CONSOLE_LINE = 256,  /**< bytes of the longest command */
@@ -41,31 +41,69 @@ typedef enum epg_console_wait {
     EPG_CONSOLE_APPLYING,     /**< the control side makes changes of parameters */
     EPG_CONSOLE_ENABLING,     /**< a cycle acts on a request to enable */
     EPG_CONSOLE_DISABLING,    /**< a cycle acts on a request to disable */
+    EPG_CONSOLE_REFUSING,     /**< a cycle takes the stop because of which the command is refused */
     EPG_CONSOLE_ENDING_STREAM /**< a cycle ends the stream */
 } epg_console_wait_t;
 
-enum { EPG_CONSOLE_CHUNK = 64 };
+enum {
+    EPG_CONSOLE_READ = 64,  /**< bytes that are read from the stream at once, at most */
+    EPG_CONSOLE_CHUNK = 256 /**< bytes that can wait behind a command, already searched for stops */
+};
 
 /** The line that is being received. */
 typedef struct epg_console_input {
-    char chunk[EPG_CONSOLE_CHUNK]; /**< bytes that were read from the stream at once */
+    char chunk[EPG_CONSOLE_CHUNK]; /**< bytes that were read from the stream */
     size_t chunk_length;
     size_t chunk_position; /**< the next byte of the chunk; the bytes after the end of a line wait here */
+    size_t stop_position;  /**< end of the last stop in the chunk; 0: there is none */
+    size_t clean_position; /**< nothing has stopped the target since the bytes behind it arrived (epg_gate_poll()) */
+    epg_console_scan_t scan;
+    uint64_t byte_ns;                                            /**< time at which the last chunk was read */
     char line[2 + EPG_CONSOLE_LINE + EPG_CONSOLE_FRAME_CRC + 1]; /**< also holds a frame with a type and a tag */
     size_t length;
     uint8_t tag; /**< of the frame with the line; 0: the line was not in a frame */
     bool too_long;
     bool no_text;  /**< the line contains bytes that are not ASCII text */
     bool complete; /**< the line has ended and must be carried out */
+    bool may_move; /**< no stop has come since the line arrived: it may move the target */
+    bool stopped;  /**< no later stop of the chunk: the search has stopped the target for it already */
+    bool is_stop;  /**< it is a stop that the search has found */
     bool echo;     /**< received characters are sent back */
 } epg_console_input_t;
 
+enum { EPG_CONSOLE_NUMBERS = 8 };
+
+/** The state of the connection to a program (live.c). */
+typedef struct epg_console_live {
+    epg_console_frame_t frame;
+    uint64_t byte_ns;  /**< arrival of the last byte of an open frame */
+    uint64_t heard_ns; /**< arrival of the last whole frame */
+    uint8_t wait_tag;  /**< tag of the command that waits for an event */
+    uint8_t list_tag;  /**< tag of the command whose answer has several lines */
+    uint8_t jog_tag;   /**< tag of the last jog */
+
+    bool leased;       /**< numbers are sent for the lease of an enabling */
+    uint64_t moved_ns; /**< numbers are sent for a movement by hand until this time */
+    uint32_t number;   /**< newest number */
+    uint32_t returned; /**< newest number that came back */
+    uint64_t
+        sent_ns[EPG_CONSOLE_NUMBERS]; /**< when the newest numbers were sent, at index number % EPG_CONSOLE_NUMBERS */
+    uint64_t number_ns;               /**< when the next number must be sent */
+
+    bool streaming;
+    size_t columns;
+    size_t value_size; /**< bytes of a value in a frame: 4 or 8 */
+    size_t most;       /**< largest number of rows in a frame */
+    uint64_t row_ns;   /**< time between two rows */
+} epg_console_live_t;
+
 struct epg_console_session {
     const epg_target_t *target;
-    const epg_console_options_t *options;
+    const struct epg_console_options *options;
     const epg_stream_t *stream;
     uint64_t start_ns; /**< time 0 of all times in answers, in board time */
     uint64_t now_ns;   /**< board time of this poll */
+    bool clean;        /**< what is read in this poll may move the target */
     bool connected;
     bool connected_before; /**< the console was connected at least once since the start */
 
@@ -116,6 +154,21 @@ void epg_console_answer(epg_console_session_t *session, const char *command, epg
 /** Makes the next command wait for an event. */
 void epg_console_wait_for(epg_console_session_t *session, const char *command, epg_console_wait_t wait);
 
+/** Returns true if the stream has found a stop after the bytes that were read last. */
+bool epg_console_is_overtaken(const epg_console_session_t *session);
+
+/**
+ * Returns true if the present command may move the target.  Otherwise a stop came after it had arrived; the refusal is
+ * reported.
+ */
+bool epg_console_may_move(epg_console_session_t *session, const char *command);
+
+/** Appends the origin of the newest stop, and its number for a program: " stop=9f3c12ab-4 by=line". */
+void epg_console_stop(epg_console_session_t *session, const epg_status_t *status);
+
+/** Appends "refused: stopped by ...", the fault if one is latched, and the number of the newest stop. */
+void epg_console_refused(epg_console_session_t *session);
+
 /** Appends " fault=" with the name of the fault as one word, and its component. */
 void epg_console_fault(epg_console_session_t *session, const epg_status_t *status);
 
@@ -127,8 +180,11 @@ uint64_t epg_console_since_start(const epg_console_session_t *session, uint64_t 
 
 /* input.c ------------------------------------------------------------------------------------------------------ */
 
-/** Takes the bytes that have arrived, up to the end of a line. */
+/** Takes the bytes that have arrived, up to the end of a line.  Carries out the stops among all of them. */
 void epg_console_read(epg_console_session_t *session);
+
+/** Stops the target if a line in an open frame asked for it, and the frame will not become whole. */
+void epg_console_poll_scan(epg_console_session_t *session);
 
 /** Takes a byte of a frame, or the zero byte that begins it. */
 void epg_console_take_framed(epg_console_session_t *session, uint8_t byte);
@@ -171,8 +227,14 @@ void epg_console_poll_jog(epg_console_session_t *session);
 /** Reports a recording that has ended. */
 void epg_console_poll_capture(epg_console_session_t *session);
 
-/** Enables the target on a lease (epg_control_request_leased()), and begins to send numbers. */
-void epg_console_enable_leased(epg_console_session_t *session);
+/** Begins a lease, and to send its numbers.  Must be called before the request to enable. */
+void epg_console_begin_lease(epg_console_session_t *session);
+
+/**
+ * Returns the time until which a movement by hand with `number` may drive, in ns of board time; 0: the number is too old,
+ * or was not sent.  Begins to send the numbers of a movement, or goes on to send them.
+ */
+uint64_t epg_console_may_move_until(epg_console_session_t *session, uint32_t number);
 
 /** Sends rows of the stream, and the number that is due. */
 void epg_console_poll_live(epg_console_session_t *session);

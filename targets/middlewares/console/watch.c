@@ -5,6 +5,7 @@
  */
 #include <string.h>
 
+#include "console.h"
 #include "session.h"
 
 /** Returns the value index of a publication or signal; SIZE_MAX if there is none with this name. */

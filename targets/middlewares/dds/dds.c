@@ -23,8 +23,8 @@
 
 enum {
     BATCH = 16,         /* messages taken from a reader in one poll; the others wait for the next poll */
-    CLOCK_TRIES = 5,    /* readings of the two clocks; the best one is used */
     PREFIX = 2,         /* length of "rt" before the names of topics */
+    CLOCK_PAUSE = 10,   /* s between two readings of the computer's clock */
     SECOND = 1000000000 /* ns */
 };
 
@@ -40,7 +40,8 @@ static struct {
     uint32_t domain_id;
     char configuration[EPG_DDS_CONFIGURATION_SIZE];
     bool failed_before; /* the reason of a failed connection has been reported */
-    uint64_t due_ns;    /* next attempt to connect, or next check of the clock and of QoS */
+    uint64_t due_ns;    /* next attempt to connect, or next check of QoS */
+    uint64_t clock_ns;  /* next reading of the computer's clock: the correction of the last one must be over */
     dds_entity_t domain;
     dds_entity_t participant; /* 0: not connected */
     dds_entity_t waitset;
@@ -194,18 +195,15 @@ static dds_return_t join_domain(void)
     return code < 0 ? code : create_all();
 }
 
-/** Sets the clock.  Of several readings of both clocks, the one during which the least time passed is used. */
-static void set_clock(void)
+/** Sets the clock.  Of several readings of both clocks, the one during which the least time passed counts. */
+static void set_clock(uint64_t now_ns)
 {
-    uint64_t shortest_ns = UINT64_MAX;
-    for (int i = 0; i < CLOCK_TRIES && shortest_ns > 0U; i++) {
+    dds.clock_ns = now_ns + CLOCK_PAUSE * (uint64_t)SECOND;
+    for (int i = 0; i < EPG_CLOCK_ANSWERS; i++) {
         const uint64_t before_ns = epg_port_time_ns();
         const uint64_t epoch_ns = (uint64_t)dds_time();
         const uint64_t took_ns = epg_port_time_ns() - before_ns;
-        if (took_ns < shortest_ns) {
-            shortest_ns = took_ns;
-            epg_node_set_time(dds.node, epoch_ns, before_ns + took_ns / 2U);
-        }
+        epg_clock_answer(&dds.node->clock, epoch_ns, before_ns + took_ns / 2U, took_ns);
     }
 }
 
@@ -227,7 +225,7 @@ static void try_to_join(uint64_t now_ns)
         fputs("the DDS participant is ready\n", stderr);
     }
     dds.failed_before = false;
-    set_clock();
+    set_clock(now_ns);
     epg_node_connected(dds.node, now_ns);
 }
 
@@ -257,6 +255,12 @@ static void start(const epg_target_t *target, const epg_stream_t *stream)
     try_to_join(epg_port_time_ns());
 }
 
+/** Returns a number for a writer, which is not 0. */
+static uint32_t number_of(dds_instance_handle_t writer)
+{
+    return (uint32_t)(writer ^ writer >> 32U) | 1U << 31U;
+}
+
 static void receive(size_t subscription, uint64_t now_ns)
 {
     struct ddsi_serdata *messages[BATCH] = {NULL};
@@ -266,7 +270,7 @@ static void receive(size_t subscription, uint64_t now_ns)
         size_t size = 0;
         const void *data = epg_dds_content(messages[i], &size);
         if (infos[i].valid_data && data != NULL) {
-            epg_node_receive(dds.node, subscription, data, size, now_ns);
+            epg_node_receive(dds.node, subscription, data, size, number_of(infos[i].publication_handle), now_ns);
         } else if (infos[i].valid_data) {
             dds.node->malformed++;
         }
@@ -274,11 +278,13 @@ static void receive(size_t subscription, uint64_t now_ns)
     }
 }
 
-/** Runs once a second: the computer's clock may have been set, and an endpoint with other QoS may have appeared. */
+/** Runs once a second: an endpoint with other QoS may have appeared, and the computer's clock may have been set. */
 static void look_around(uint64_t now_ns)
 {
     dds.due_ns = now_ns + SECOND;
-    set_clock();
+    if (now_ns >= dds.clock_ns) {
+        set_clock(now_ns);
+    }
     for (size_t i = 0; i < dds.target->subscription_count; i++) {
         epg_dds_check_reader(dds.readers[i].entity, dds.readers[i].topic + PREFIX);
     }
@@ -295,11 +301,12 @@ static void poll_node(uint64_t now_ns)
         }
         return;
     }
+    epg_node_listen(dds.node);
     for (size_t i = 0; i < dds.target->subscription_count; i++) {
         receive(i, now_ns);
     }
     epg_dds_poll_repliers(now_ns);
-    epg_node_poll(dds.node, now_ns);
+    (void)epg_node_poll(dds.node, now_ns);
     if (now_ns >= dds.due_ns) {
         look_around(now_ns);
     }

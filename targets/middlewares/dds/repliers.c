@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "epg/host_log.h"
 #include "epg/service.h"
 #include "graph.h"
 #include "message.h"
@@ -19,13 +20,16 @@ enum {
     MATCH_NS = 100000000, /* longest time that a reply waits for its reader, as in rmw_cyclonedds */
     TOPIC = 16,           /* bytes of "rq" and "Request" */
     ID = 64,              /* bytes of an identification in the user data of an endpoint */
-    NAME = EPG_NODE_TOPIC_SIZE + TOPIC
+    NAME = EPG_NODE_TOPIC_SIZE + TOPIC,
+    STRANGERS = 8 /* programs with another RMW that are remembered */
 };
 
 typedef struct replier {
     dds_entity_t reader;
     dds_entity_t writer;
     struct ddsi_sertype *type; /* of the replies */
+    int before_stop;           /* requests that wait, up to the newest one to disable */
+    int stale;                 /* requests that wait since before a stop of something else */
 } replier_t;
 
 static struct {
@@ -39,6 +43,8 @@ static struct {
     char client[ID]; /* identification of the client, as both its endpoints have it */
     bool ready;
     uint64_t ready_ns;
+
+    dds_guid_t strangers[STRANGERS]; /* participants of another RMW that were reported, the newest first */
 } services;
 
 /* Creation ----------------------------------------------------------------------------------------------------- */
@@ -48,6 +54,7 @@ dds_return_t epg_dds_start_repliers(epg_node_t *node)
     services.node = node;
     services.count = node->target->service_count;
     services.next = 0;
+    memset(services.strangers, 0, sizeof services.strangers);
     services.repliers = calloc(services.count + 1, sizeof *services.repliers);
     return services.repliers == NULL ? DDS_RETCODE_OUT_OF_RESOURCES : DDS_RETCODE_OK;
 }
@@ -165,6 +172,32 @@ static bool reader_is_known(dds_entity_t writer)
     return found;
 }
 
+/**
+ * Reports a client that gets no replies, because its RMW writes requests in another way.  Each program is reported once,
+ * whatever it asks for.
+ */
+static void report_stranger(size_t index, const dds_guid_t *participant)
+{
+    services.node->client_advice =
+        "a client of another RMW gets no reply: run it with RMW_IMPLEMENTATION=rmw_cyclonedds_cpp";
+    for (size_t i = 0; i < STRANGERS; i++) {
+        if (memcmp(&services.strangers[i], participant, sizeof *participant) == 0) {
+            return;
+        }
+    }
+    memmove(&services.strangers[1], &services.strangers[0], sizeof services.strangers - sizeof services.strangers[0]);
+    services.strangers[0] = *participant;
+    const epg_service_t *service = &services.node->target->services[index];
+    char name[EPG_NODE_TOPIC_SIZE] = "";
+    (void)epg_node_name(services.node, service->name, true, name, sizeof name);
+    if (epg_host_logs(EPG_HOST_LOG_WARN)) {
+        fprintf(stderr,
+                "warning: a client of another RMW asks for %s: it gets no reply\n"
+                "hint: run it with RMW_IMPLEMENTATION=rmw_cyclonedds_cpp\n",
+                name);
+    }
+}
+
 /* Requests and replies ----------------------------------------------------------------------------------------- */
 
 /** Passes a request to the node, if a client of rmw_cyclonedds has sent it. */
@@ -177,6 +210,9 @@ static void pass(size_t index, const struct ddsi_serdata *message, dds_instance_
         return; /* the client has ended */
     }
     const bool known = client_of(writer->qos, services.client);
+    if (!known) {
+        report_stranger(index, &writer->participant_key);
+    }
     dds_builtintopic_free_endpoint(writer);
     if (!known || data == NULL || size < HEADER) {
         services.node->malformed++;
@@ -188,16 +224,47 @@ static void pass(size_t index, const struct ddsi_serdata *message, dds_instance_
     (void)epg_service_request(services.node, index, data + HEADER, size - HEADER, now_ns);
 }
 
+/** Lets the requests to disable that wait act at once: they do not wait for the replies to others. */
+static void look_ahead(size_t index)
+{
+    struct ddsi_serdata *messages[DEPTH] = {NULL};
+    dds_sample_info_t infos[DEPTH];
+    replier_t *replier = &services.repliers[index];
+    const dds_return_t count = dds_readcdr(replier->reader, messages, DEPTH, infos, DDS_ANY_STATE);
+    replier->before_stop = 0;
+    if (!services.node->services_clean || replier->stale > count) {
+        replier->stale = count > 0 ? count : 0;
+    }
+    for (dds_return_t i = 0; i < count; i++) {
+        size_t size = 0;
+        const unsigned char *data = epg_dds_content(messages[i], &size);
+        if (infos[i].valid_data && data != NULL && size > HEADER &&
+            epg_service_is_stop(services.node, index, data + HEADER, size - HEADER)) {
+            replier->before_stop = i + 1;
+            if (infos[i].sample_state == DDS_SST_NOT_READ) {
+                epg_stop(services.node->target->control, EPG_STOP_SERVICE);
+            }
+        }
+        ddsi_serdata_unref(messages[i]);
+    }
+}
+
 /** Takes one request of each service until one is in work. */
 static void take_request(uint64_t now_ns)
 {
     const size_t first = services.next;
     for (size_t i = 0; i < services.count && epg_service_idle(services.node); i++) {
         const size_t index = (first + i) % services.count;
+        replier_t *replier = &services.repliers[index];
         struct ddsi_serdata *message = NULL;
         dds_sample_info_t info;
-        if (dds_takecdr(services.repliers[index].reader, &message, 1, &info, DDS_ANY_STATE) > 0) {
+        if (dds_takecdr(replier->reader, &message, 1, &info, DDS_ANY_STATE) > 0) {
+            epg_service_state_t *state = services.node->target->service_state;
             services.next = (index + 1) % services.count;
+            state->stopped = info.sample_state == DDS_SST_READ;
+            state->overtaken = replier->before_stop > 1 || replier->stale > 0;
+            replier->before_stop--;
+            replier->stale -= replier->stale > 0 ? 1 : 0;
             if (info.valid_data) {
                 pass(index, message, info.publication_handle, now_ns);
             }
@@ -224,6 +291,11 @@ void epg_dds_poll_repliers(uint64_t now_ns)
 {
     if (services.count == 0) {
         return;
+    }
+    for (size_t i = 0; i < services.count; i++) {
+        if (services.node->target->services[i].kind == &epg_service_enable) {
+            look_ahead(i);
+        }
     }
     take_request(now_ns);
     if (!epg_service_poll(services.node, now_ns)) {

@@ -8,7 +8,7 @@
  * | waiting  | pings every 0.2 s; after an answer, requests session, node  | granted: creating                        |
  * | creating | requests publishers and subscriptions, one per poll         | all exist: running; refused: waiting     |
  * | running  | exchanges messages; pings every 0.2 s; asks for the time    | the agent is silent for 1 s, or a stream |
- * |          | every 10 s                                                  | is full for 2 s: waiting                 |
+ * |          | when epg/wall_clock.h says so                               | is full for 2 s: waiting                 |
  */
 #include "micro_ros.h"
 
@@ -19,6 +19,7 @@
 
 #include "epg/node.h"
 #include "epg/port.h"
+#include "micro_ros_clock.h"
 #include "micro_ros_entities.h"
 #include "micro_ros_system.h"
 #include "micro_ros_transport.h"
@@ -26,20 +27,16 @@
 #define MS ((uint64_t)1000000)
 
 static const uint64_t PING_NS = 200 * MS;
-static const uint64_t SILENCE_NS = 1000 * MS;   /* silence after which the agent counts as lost */
-static const uint64_t REFUSED_NS = 2000 * MS;   /* time from a refusal to the next attempt */
-static const uint64_t SYNC_NS = 10000 * MS;     /* interval between two requests for the time */
-static const uint64_t SYNC_AGAIN_NS = 500 * MS; /* the same after a request without an answer */
-static const uint64_t FULL_NS = 150 * MS;       /* time with a full reliable stream until a pause of REST_NS */
-static const uint64_t STUCK_NS = 2000 * MS;     /* time with a full reliable stream until the session is given up */
+static const uint64_t SILENCE_NS = 1000 * MS; /* silence after which the agent counts as lost */
+static const uint64_t REFUSED_NS = 2000 * MS; /* time from a refusal to the next attempt */
+static const uint64_t FULL_NS = 150 * MS;     /* time with a full reliable stream until a pause of REST_NS */
+static const uint64_t STUCK_NS = 2000 * MS;   /* time with a full reliable stream until the session is given up */
 /* The client library asks the agent for missing frames only if the library was not called for 100 ms. */
 static const uint64_t REST_NS = 105 * MS;
 
-enum { ANSWER_MS = 50, FRAMES_PER_POLL = 32 };
+enum { PONG_MS = 50, FRAMES_PER_POLL = 32 };
 
-static const char WAITING[] = "waiting";
-static const char CREATING[] = "creating";
-static const char RUNNING[] = "running";
+typedef enum state { WAITING, CREATING, RUNNING } state_t;
 
 /** The only node of an executable. */
 static struct {
@@ -48,14 +45,14 @@ static struct {
     const epg_micro_ros_options_t *options;
     epg_node_t *node;
     epg_micro_ros_entities_t entities;
-    const char *state;
+    epg_micro_ros_question_t question; /* of this connection, or still of the one before it */
+    state_t state;
     bool usable; /* libmicroros has accepted the memory and the stream */
     bool again;  /* the node was running before */
 
     uint64_t now_ns;   /* board time of this poll */
     uint64_t ping_ns;  /* next ping */
     uint64_t alive_ns; /* last answer of the agent */
-    uint64_t sync_ns;  /* next request for the time */
     uint64_t full_ns;  /* since then, the reliable stream has been full; 0: it has room */
     uint64_t asked_ns; /* end of the last pause, or the instant at which the stream became full */
     uint64_t rest_ns;  /* end of the present pause, in which the library is not called */
@@ -64,7 +61,7 @@ static struct {
 static bool agent_answers(void)
 {
     ros.ping_ns = ros.now_ns + PING_NS;
-    return rmw_uros_ping_agent(ANSWER_MS, 1) == RMW_RET_OK;
+    return rmw_uros_ping_agent(PONG_MS, 1) == RMW_RET_OK;
 }
 
 static void lose_agent(uint64_t pause_ns)
@@ -103,7 +100,7 @@ static void take_message(size_t index)
 {
     epg_micro_ros_received_t message = {.data = ros.options->received, .capacity = ros.options->received_size};
     if (rcl_take(&ros.options->subscriptions[index], &message, NULL, NULL) == RCL_RET_OK) {
-        epg_node_receive(ros.node, index, message.data, message.size, ros.now_ns);
+        epg_node_receive(ros.node, index, message.data, message.size, 0, ros.now_ns);
     } else {
         ros.node->malformed++; /* the message is larger than any valid one */
         rcl_reset_error();
@@ -127,6 +124,13 @@ static bool take_frame(void)
         }
     }
     return epg_micro_ros_transport_heard() || any;
+}
+
+static void take_frames(void)
+{
+    epg_node_listen(ros.node);
+    for (int i = 0; i < FRAMES_PER_POLL && take_frame(); i++) {
+    }
 }
 
 /* States ------------------------------------------------------------------------------------------------------- */
@@ -153,13 +157,13 @@ static void poll_creating(void)
         ros.state = RUNNING;
         ros.alive_ns = ros.now_ns;
         ros.ping_ns = ros.now_ns + PING_NS;
-        ros.sync_ns = ros.now_ns;
         ros.full_ns = 0;
         ros.rest_ns = 0;
         if (ros.again) {
             epg_control_count_reconnect(ros.target->control);
         }
         ros.again = true;
+        epg_clock_connected(&ros.node->clock, ros.now_ns);
         epg_node_connected(ros.node, ros.now_ns);
     }
 }
@@ -178,29 +182,17 @@ static bool check_agent(void)
     return true;
 }
 
-static void ask_for_time(void)
-{
-    ros.sync_ns = ros.now_ns + SYNC_AGAIN_NS;
-    if (rmw_uros_sync_session(ANSWER_MS) == RMW_RET_OK) {
-        epg_node_set_time(ros.node, (uint64_t)rmw_uros_epoch_nanos(), epg_port_time_ns());
-        ros.sync_ns = ros.now_ns + SYNC_NS;
-    }
-}
-
 static void poll_running(void)
 {
     if (ros.now_ns < ros.rest_ns) {
         return;
     }
-    for (int i = 0; i < FRAMES_PER_POLL && take_frame(); i++) {
-    }
+    take_frames();
     if (!check_agent()) {
         return;
     }
-    if (ros.now_ns >= ros.sync_ns) {
-        ask_for_time();
-    }
-    epg_node_poll(ros.node, ros.now_ns);
+    const bool busy = epg_node_poll(ros.node, ros.now_ns);
+    epg_micro_ros_clock_poll(&ros.question, &ros.node->clock, ros.now_ns, busy);
     if (ros.full_ns != 0 && ros.now_ns >= ros.asked_ns + FULL_NS) {
         ros.rest_ns = ros.now_ns + REST_NS;
         ros.asked_ns = ros.rest_ns;
@@ -228,10 +220,17 @@ static void start(const epg_target_t *target, const epg_stream_t *stream)
 static void poll(uint64_t now_ns)
 {
     ros.now_ns = now_ns;
-    if (!ros.usable || !ros.stream->connected(ros.stream->context)) {
+    if (!ros.usable) {
+        return;
+    }
+    if (!ros.stream->connected(ros.stream->context)) {
+        if (ros.state == RUNNING) {
+            take_frames(); /* the agent's last messages: a request to disable can be among them */
+        }
         if (ros.state != WAITING) {
             lose_agent(0);
         }
+        epg_micro_ros_transport_drop();
     } else if (ros.state == WAITING) {
         poll_waiting();
     } else if (ros.state == CREATING) {
@@ -249,7 +248,8 @@ static void stop(void)
 
 static const char *state(void)
 {
-    return ros.state;
+    static const char *const names[] = {[WAITING] = "waiting", [CREATING] = "creating", [RUNNING] = "running"};
+    return names[ros.state];
 }
 
 const epg_middleware_t epg_micro_ros = {.start = start, .poll = poll, .stop = stop, .state = state};

@@ -11,7 +11,7 @@
 #include <rcl/rcl.h>
 
 #include "epg/node.h"
-#include "micro_ros.h"
+#include "micro_ros_options.h"
 
 typedef struct epg_micro_ros_entities {
     const epg_node_t *node;

@@ -14,6 +14,8 @@
 
 #define MS ((uint64_t)1000000)
 
+enum { DROPPED = 64 }; /* largest number of readings in one call of epg_micro_ros_transport_drop() */
+
 static const epg_stream_t *stream;
 static bool heard;
 
@@ -41,12 +43,19 @@ static size_t read_bytes(struct uxrCustomTransport *transport, uint8_t *data, si
     const uint64_t until_ns = epg_port_time_ns() + (timeout_ms > 0 ? (uint64_t)timeout_ms * MS : 0U);
     *error = 0;
     for (;;) {
-        const size_t count = stream->connected(stream->context) ? stream->read(stream->context, data, size) : 0;
+        const size_t count = stream->read(stream->context, data, size);
         heard = heard || count > 0;
         if (count > 0 || epg_port_time_ns() >= until_ns) {
             return count;
         }
         epg_port_wait_for_bytes();
+    }
+}
+
+void epg_micro_ros_transport_drop(void)
+{
+    char dropped[64];
+    for (int i = 0; i < DROPPED && stream->read(stream->context, dropped, sizeof dropped) > 0; i++) {
     }
 }
 

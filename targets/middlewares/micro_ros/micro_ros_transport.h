@@ -13,6 +13,9 @@
 /** Registers the transport.  Must be called once.  Returns false if libmicroros refuses it. */
 bool epg_micro_ros_transport_start(const epg_stream_t *stream);
 
+/** Drops the bytes that have arrived: while nobody is connected, so that the next agent's session begins without them. */
+void epg_micro_ros_transport_drop(void);
+
 /** Returns true if bytes have been read since the last call. */
 bool epg_micro_ros_transport_heard(void);
 

@@ -33,7 +33,7 @@ function(_epg_middleware_xrce library)
     "${micro_xrce_dds_client}/src/c/util/ping.c")
   target_include_directories(epg_micro_xrce_dds_client SYSTEM PUBLIC
     "${headers}" "${micro_cdr}/include" "${micro_xrce_dds_client}/include")
-  set_target_properties(epg_micro_xrce_dds_client PROPERTIES C_STANDARD 99 C_STANDARD_REQUIRED ON)
+  set_target_properties(epg_micro_xrce_dds_client PROPERTIES C_STANDARD 99 C_STANDARD_REQUIRED ON UNITY_BUILD OFF)
   if(CMAKE_C_COMPILER_ID MATCHES "GNU|Clang")
     target_compile_options(epg_micro_xrce_dds_client PRIVATE -w -ffunction-sections -fdata-sections
       $<TARGET_PROPERTY:${library},COMPILE_OPTIONS>) # for size, for example

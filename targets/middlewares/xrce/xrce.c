@@ -9,8 +9,12 @@
  * | creating | requests node, topics, writers and readers, one by one     | all exist: running; refused, or no answer |
  * |          |                                                            | within 2 s: waiting, with longer          |
  * |          |                                                            | intervals                                 |
- * | running  | exchanges messages, requests of services and replies;      | the session is unknown to the agent, or   |
- * |          | pings every 0.1 s; asks for the time every 10 s            | the agent silent for 1 s: waiting         |
+ * | running  | exchanges messages, requests of services and replies       | the session is unknown to the agent, or   |
+ * |          |                                                            | the agent silent for 4 s: waiting         |
+ *
+ * In the last two states it pings every 0.1 s, and asks for the time when epg/wall_clock.h says so.  An agent that was
+ * restarted answers the first ping that it does not know the session.  A silent agent may be busy with the end of other
+ * clients, and still know it; therefore no other limit counts while the agent is silent.
  *
  * The client library is called so that none of its functions waits.  With a timeout of 0, a function sends the frames
  * that are ready, takes one frame if there is one, and returns.
@@ -34,14 +38,16 @@ static const uint64_t MOST_PATIENCE_NS = 2000 * MS; /* the same for an agent tha
 static const uint64_t REFUSED_NS = 2000 * MS;       /* the same after the agent has refused a request */
 static const uint64_t ANSWER_NS = 2000 * MS;        /* longest time for one answer in the state `creating` */
 static const uint64_t PING_NS = 100 * MS;
-static const uint64_t SILENCE_NS = 1000 * MS;   /* silence of a lost agent: even with noise, one of ten pings arrives */
-static const uint64_t STUCK_NS = 2000 * MS;     /* time without progress of a stream, though the agent answers pings */
-static const uint64_t HEARTBEAT_NS = 50 * MS;   /* time from an unacknowledged frame to the request for its ACKNACK */
-static const uint64_t SYNC_NS = 10000 * MS;     /* interval between two requests for the time */
-static const uint64_t SYNC_AGAIN_NS = 500 * MS; /* the same while the clock is not set */
-static const int64_t LONGEST_ROUND_NS = 100 * 1000000; /* longest round trip of an answer that sets the clock */
+static const uint64_t QUIET_NS = 1000 * MS; /* silence without a doubt: even with noise, one of ten pings arrives */
+/* Silence of a lost agent.  An agent that deletes a client serves no other one, for 0.1 s per reader and service: 1.2 s
+   for a board with 3 readers and the 9 services.  In 4 s, three such boards can leave. */
+static const uint64_t SILENCE_NS = 4000 * MS;
+static const uint64_t STUCK_NS = 2000 * MS;   /* time without progress of a stream, though the agent answers pings */
+static const uint64_t HEARTBEAT_NS = 50 * MS; /* time from an unacknowledged frame to the request for its ACKNACK */
 
 enum { FRAMES_PER_POLL = 32, DROPPED_PER_FRAME = 8 };
+
+enum { TIMESTAMP = 0x0E }; /* id of a submessage: DDS-XRCE 1.0, 8.3.5 */
 
 /** Bytes on the line.  As many or more that one poll has written are sent by the next one, so that both are short. */
 enum { LONG_MESSAGES = 512 };
@@ -76,7 +82,6 @@ static struct {
     uint64_t answer_ns;   /* deadline of the agent's answer */
     uint64_t ping_ns;     /* next ping */
     uint64_t alive_ns;    /* last sign of life of the agent */
-    uint64_t sync_ns;     /* next request for the time */
     progress_t sent;      /* our reliable stream, until the agent has acknowledged all frames */
     progress_t received;  /* the agent's reliable stream, until all announced frames are here */
     progress_t replies;   /* the same for the stream of the services */
@@ -138,27 +143,26 @@ static void on_sample(uxrSession *session, uxrObjectId object, uint16_t request,
     (void)context;
     const size_t left = ucdr_buffer_remaining(buffer);
     if (client.status.state == EPG_XRCE_RUNNING && object.id > 0) {
-        epg_node_receive(client.node, (size_t)object.id - 1, buffer->iterator, length < left ? length : left,
+        epg_node_receive(client.node, (size_t)object.id - 1, buffer->iterator, length < left ? length : left, 0,
                          client.now_ns);
     }
 }
 
 /**
- * Sets the clock from the agent's answer.  All times are in nanoseconds.  `asked` and `came` are in board time, the two
- * others in the agent's time.  As in NTP, both ways are taken to be equally long.
+ * Takes the agent's answer to a request for the time.  All times are in nanoseconds.  `asked` and `came` are in board
+ * time, the two others in the agent's time.  As in NTP, both ways are taken to be equally long.
  */
 static void on_time(uxrSession *session, int64_t came, int64_t agent_received, int64_t agent_sent, int64_t asked,
                     void *context)
 {
     (void)session;
     (void)context;
-    const int64_t round = came - asked - (agent_sent - agent_received);
-    if (asked > came || round < 0 || round > LONGEST_ROUND_NS) {
+    const int64_t round_trip = came - asked - (agent_sent - agent_received);
+    if (asked > came || round_trip < 0) {
         return;
     }
     const int64_t ahead = (agent_received - asked + (agent_sent - came)) / 2;
-    epg_node_set_time(client.node, (uint64_t)(came + ahead), (uint64_t)came);
-    client.sync_ns = client.now_ns + SYNC_NS;
+    epg_clock_answer(&client.node->clock, (uint64_t)(came + ahead), (uint64_t)came, (uint64_t)round_trip);
 }
 
 /* Reliable streams --------------------------------------------------------------------------------------------- */
@@ -282,12 +286,27 @@ static void poll_waiting(void)
         client.answer_ns = client.now_ns + ANSWER_NS;
         client.ping_ns = client.now_ns + PING_NS;
         epg_xrce_entities_start(&client.entities);
+        epg_clock_connected(&client.node->clock, client.now_ns);
     } else if (status != UXR_STATUS_NONE) {
         client.status.refused++;
         wait_for_agent(REFUSED_NS);
     } else if (client.now_ns >= client.attempt_ns) {
         ask_for_session();
     }
+}
+
+/**
+ * Lets no limit run out while the agent is silent, except that of the silence.  It is busy, or gone.  The messages that
+ * follow have waited in it.
+ */
+static void wait_in_silence(void)
+{
+    client.answer_ns = client.now_ns + ANSWER_NS;
+    client.sent.since_ns = 0;
+    client.received.since_ns = 0;
+    client.replies.since_ns = 0;
+    client.requests.since_ns = 0;
+    epg_node_delayed(client.node, client.now_ns);
 }
 
 /** Pings the agent when that is due.  Returns false if the session is lost. */
@@ -297,9 +316,12 @@ static bool check_agent(void)
         client.guard.pong = false;
         client.alive_ns = client.now_ns;
     }
-    /* In the state `creating`, ANSWER_NS is the limit instead. */
-    const bool lost = client.status.state == EPG_XRCE_RUNNING &&
-                      (client.now_ns >= client.alive_ns + SILENCE_NS || streams_are_stuck());
+    if (client.now_ns >= client.alive_ns + QUIET_NS) {
+        wait_in_silence();
+    }
+    /* In the state `creating`, ANSWER_NS is the limit of the streams. */
+    const bool lost = client.now_ns >= client.alive_ns + SILENCE_NS ||
+                      (client.status.state == EPG_XRCE_RUNNING && streams_are_stuck());
     if (client.guard.unknown || lost) {
         lose_agent(0);
         return false;
@@ -311,6 +333,24 @@ static bool check_agent(void)
     return true;
 }
 
+/**
+ * Asks the agent for the time when that is due.  `busy`: this poll has sent other messages, so the request waits.
+ *
+ * The library's function for it takes a received frame, too, which would make the poll longer.
+ */
+static void ask_for_time(bool busy)
+{
+    const bool pinged = client.ping_ns == client.now_ns + PING_NS;
+    if (!epg_clock_poll(&client.node->clock, client.now_ns, busy || pinged)) {
+        return;
+    }
+    const uint64_t asked_ns = epg_port_time_ns();
+    const uint32_t time[2] = {(uint32_t)(asked_ns / 1000000000U), (uint32_t)(asked_ns % 1000000000U)};
+    uint8_t frame[8 + sizeof time] = {EPG_XRCE_SESSION_ID, 0, 0, 0, TIMESTAMP, 1, sizeof time, 0};
+    memcpy(frame + 8, time, sizeof time);
+    (void)send_frame(NULL, frame, sizeof frame);
+}
+
 static void start_running(void)
 {
     client.status.state = EPG_XRCE_RUNNING;
@@ -320,18 +360,18 @@ static void start_running(void)
     if (client.status.connections > 1) {
         epg_control_count_reconnect(client.target->control);
     }
-    client.sync_ns = client.now_ns;
     epg_node_connected(client.node, client.now_ns);
 }
 
-static void poll_creating(void)
+/** Returns true if it has sent a request. */
+static bool poll_creating(void)
 {
     const size_t step = client.entities.step;
     const epg_xrce_progress_t progress = epg_xrce_entities_poll(&client.entities);
     if (progress == EPG_XRCE_REFUSED) {
         client.status.refused++;
         lose_agent(REFUSED_NS);
-        return;
+        return false;
     }
     client.guard.reading = epg_xrce_entities_exist(&client.entities);
     if (client.entities.step != step) {
@@ -342,15 +382,7 @@ static void poll_creating(void)
     } else if (client.now_ns >= client.answer_ns) {
         lose_slow_agent();
     }
-}
-
-static void poll_running(void)
-{
-    if (client.now_ns >= client.sync_ns) {
-        client.sync_ns = client.now_ns + SYNC_AGAIN_NS;
-        (void)uxr_sync_session(&client.session, 0);
-    }
-    epg_node_poll(client.node, client.now_ns);
+    return client.entities.step != step;
 }
 
 /* Topics ------------------------------------------------------------------------------------------------------- */
@@ -434,6 +466,7 @@ static void start(const epg_target_t *target, const epg_stream_t *stream)
 static void exchange_frames(void)
 {
     client.buffered = 0;
+    epg_node_listen(client.node);
     for (int i = 0; i < FRAMES_PER_POLL && uxr_run_session_until_timeout(&client.session, 0); i++) {
     }
 }
@@ -441,30 +474,31 @@ static void exchange_frames(void)
 static void poll(uint64_t now_ns)
 {
     client.now_ns = now_ns;
+    client.services.now_ns = now_ns;
     if (!client.stream->connected(client.stream->context)) {
         if (client.status.state != EPG_XRCE_WAITING) {
+            exchange_frames(); /* the agent's last messages: a request to disable can be among them */
             lose_agent(0);
         }
-        epg_xrce_link_reset(&client.link);
+        epg_xrce_link_drop(&client.link);
         return;
     }
-    client.services.now_ns = now_ns;
     time_heartbeat();
     exchange_frames();
+    bool busy = false;
     if (client.status.state == EPG_XRCE_WAITING) {
         poll_waiting();
     } else if (check_agent()) {
         if (client.target->service_count > 0) {
             epg_xrce_services_poll(&client.services, now_ns); /* the library's buffer is free until the next message */
         }
-        if (client.status.state == EPG_XRCE_CREATING) {
-            poll_creating();
-        } else {
-            poll_running();
-        }
+        busy = client.status.state == EPG_XRCE_CREATING ? poll_creating() : epg_node_poll(client.node, client.now_ns);
     }
     if (client.status.state != EPG_XRCE_WAITING && client.buffered < LONG_MESSAGES) {
         uxr_flash_output_streams(&client.session);
+        if (client.now_ns >= client.node->clock.due_ns) { /* after the messages, for which there is room on the line */
+            ask_for_time(busy);
+        }
     }
 }
 
@@ -491,4 +525,4 @@ static const char *state(void)
     return names[client.status.state];
 }
 
-const epg_middleware_t epg_xrce = {.start = start, .poll = poll, .stop = stop, .state = state};
+const epg_middleware_t epg_xrce = {.start = start, .poll = poll, .stop = stop, .state = state, .one_part = true};

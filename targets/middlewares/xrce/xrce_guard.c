@@ -97,66 +97,36 @@ static void read_info(epg_xrce_guard_t *guard, const uint8_t *payload, size_t le
     }
 }
 
-static void read_service_acknack(epg_xrce_guard_t *guard, const uint8_t *payload)
-{
-    epg_xrce_services_acknowledge(guard->services, number_at(payload), (uint16_t)(payload[2] << 8 | payload[3]));
-    guard->taken = true;
-}
-
-static void read_service_heartbeat(epg_xrce_guard_t *guard, uint8_t *payload)
-{
-    const uint16_t handled = (uint16_t)(guard->services->expected - 1U);
-    if (limit_heartbeat(guard, &guard->behind[1], handled, payload + 2)) {
-        epg_xrce_services_heartbeat(guard->services, number_at(payload + 2));
-    }
-    guard->taken = true;
-}
-
 /** Returns true if an ACKNACK or a HEARTBEAT is about the stream of the services. */
-static bool is_of_services(const epg_xrce_guard_t *guard, const uint8_t *payload, size_t length)
+static bool is_of_services(const epg_xrce_guard_t *guard, const uint8_t *payload)
 {
-    return length >= 5 && payload[4] == EPG_XRCE_SERVICE_STREAM && guard->services != NULL;
+    return payload[4] == EPG_XRCE_SERVICE_STREAM && guard->services != NULL;
 }
 
-/** Returns true if the library may get a submessage that came on `stream`. */
-static bool passes(epg_xrce_guard_t *guard, uint8_t stream, uint8_t id, uint8_t flags, uint8_t *payload, size_t length)
+/** Returns true if the library may get an ACKNACK.  Takes it if it is about the stream of the services. */
+static bool acknack_passes(epg_xrce_guard_t *guard, const uint8_t *payload)
 {
-    if (!guard->open) {
-        memset(guard->behind, 0, sizeof guard->behind);
-        /* A STATUS_AGENT with properties must not pass: the library would write their names to an invalid pointer. */
-        return id == STATUS_AGENT && stream == NO_STREAM && length >= 11 && payload[10] == 0;
-    }
-    switch (id) {
-    case STATUS:
-        return length >= 6;
-    case INFO:
-        read_info(guard, payload, length);
-        return false; /* the library would read names without a limit from it */
-    case DATA: {
-        const unsigned int kind = length >= 4 ? payload[3] & 0x0FU : 0U;
-        return guard->reading && stream != NO_STREAM && kind == UXR_DATAREADER_ID && (flags & FORMAT_FLAGS) == 0;
-    }
-    case ACKNACK:
-        if (stream == NO_STREAM && is_of_services(guard, payload, length)) {
-            read_service_acknack(guard, payload);
-            return false;
-        }
-        /* On another stream, the library could keep the ACKNACK and read it when it is not timely any more. */
-        return stream == NO_STREAM && length >= 5 && payload[4] == RELIABLE && is_timely(guard, number_at(payload));
-    case HEARTBEAT:
-        if (is_of_services(guard, payload, length)) {
-            read_service_heartbeat(guard, payload);
-            return false;
-        }
-        return length >= 5 && payload[4] == RELIABLE &&
-               limit_heartbeat(guard, &guard->behind[0], guard->session->streams.input_reliable[0].last_handled,
-                               payload + 2);
-    case TIMESTAMP_REPLY:
-        return length >= 24;
-    default:
-        /* The messages of topics fit into one frame, so there are no fragments.  No other message is for a client. */
+    if (is_of_services(guard, payload)) {
+        epg_xrce_services_acknowledge(guard->services, number_at(payload), (uint16_t)(payload[2] << 8 | payload[3]));
+        guard->taken = true;
         return false;
     }
+    return payload[4] == RELIABLE && is_timely(guard, number_at(payload));
+}
+
+/** Returns true if the library may get a HEARTBEAT.  Takes it if it is about the stream of the services. */
+static bool heartbeat_passes(epg_xrce_guard_t *guard, uint8_t *payload)
+{
+    if (is_of_services(guard, payload)) {
+        const uint16_t handled = (uint16_t)(guard->services->expected - 1U);
+        if (limit_heartbeat(guard, &guard->behind[1], handled, payload + 2)) {
+            epg_xrce_services_heartbeat(guard->services, number_at(payload + 2));
+        }
+        guard->taken = true;
+        return false;
+    }
+    const uint16_t handled = guard->session->streams.input_reliable[0].last_handled;
+    return payload[4] == RELIABLE && limit_heartbeat(guard, &guard->behind[0], handled, payload + 2);
 }
 
 /** Returns the bytes of a payload that the library reads.  It would take the rest for the next submessage. */
@@ -174,6 +144,35 @@ static size_t known_part(uint8_t id, size_t length)
         return 24;
     default:
         return length;
+    }
+}
+
+/** Returns true if the library may get a submessage that came on `stream`.  Its known part is there. */
+static bool passes(epg_xrce_guard_t *guard, uint8_t stream, uint8_t id, uint8_t flags, uint8_t *payload, size_t length)
+{
+    if (!guard->open) {
+        memset(guard->behind, 0, sizeof guard->behind);
+        /* A STATUS_AGENT with properties must not pass: the library would write their names to an invalid pointer. */
+        return id == STATUS_AGENT && stream == NO_STREAM && payload[10] == 0;
+    }
+    switch (id) {
+    case STATUS:
+    case TIMESTAMP_REPLY:
+        return true;
+    case INFO:
+        read_info(guard, payload, length);
+        return false; /* the library would read names without a limit from it */
+    case DATA:
+        return guard->reading && stream != NO_STREAM && (flags & FORMAT_FLAGS) == 0 && length >= 4 &&
+               (payload[3] & 0x0FU) == UXR_DATAREADER_ID;
+    case ACKNACK:
+        /* On another stream, the library could keep the ACKNACK and read it when it is not timely any more. */
+        return stream == NO_STREAM && acknack_passes(guard, payload);
+    case HEARTBEAT:
+        return heartbeat_passes(guard, payload);
+    default:
+        /* The messages of topics fit into one frame, so there are no fragments.  No other message is for a client. */
+        return false;
     }
 }
 
@@ -200,11 +199,12 @@ static size_t sift(epg_xrce_guard_t *guard, uint8_t *frame, size_t size)
         }
         const size_t padded = (SUBHEADER + length + 3U) & ~(size_t)3U;
         const size_t taken = padded < size - position ? padded : size - position;
-        if (!(id == ACKNACK && acknowledged) &&
+        const size_t known = known_part(id, length);
+        if (length >= known && !(id == ACKNACK && acknowledged) &&
             passes(guard, frame[1], id, flags, frame + position + SUBHEADER, length)) {
             acknowledged |= id == ACKNACK;
-            const size_t known = (SUBHEADER + known_part(id, length) + 3U) & ~(size_t)3U;
-            const size_t kept = known < taken ? known : taken;
+            const size_t whole = (SUBHEADER + known + 3U) & ~(size_t)3U;
+            const size_t kept = whole < taken ? whole : taken;
             memmove(frame + end, frame + position, kept);
             end += kept;
         }
@@ -213,10 +213,21 @@ static size_t sift(epg_xrce_guard_t *guard, uint8_t *frame, size_t size)
     return end;
 }
 
+/** Returns true if a frame of this session is for the library, and comes at the right time. */
+static bool is_for_library(const epg_xrce_guard_t *guard, const uint8_t *frame, size_t size)
+{
+    if (size < HEADER + SUBHEADER) {
+        return false;
+    }
+    if (frame[1] == RELIABLE) {
+        return guard->open && fits(guard, number_at(frame + 2));
+    }
+    return frame[1] == NO_STREAM || frame[1] == BEST_EFFORT;
+}
+
 size_t epg_xrce_guard(epg_xrce_guard_t *guard, uint8_t *frame, size_t size)
 {
     const bool ours = size >= HEADER && frame[0] == EPG_XRCE_SESSION_ID;
-    const bool whole = ours && size >= HEADER + SUBHEADER;
     guard->taken = false;
     if (ours && guard->open && guard->services != NULL && frame[1] == EPG_XRCE_SERVICE_STREAM) {
         const bool good = epg_xrce_services_receive(guard->services, number_at(frame + 2), frame + HEADER,
@@ -224,9 +235,7 @@ size_t epg_xrce_guard(epg_xrce_guard_t *guard, uint8_t *frame, size_t size)
         guard->dropped += good ? 0U : 1U;
         return 0;
     }
-    const bool reliable = whole && frame[1] == RELIABLE;
-    if (!whole || (!reliable && frame[1] != NO_STREAM && frame[1] != BEST_EFFORT) ||
-        (reliable && (!guard->open || !fits(guard, number_at(frame + 2))))) {
+    if (!ours || !is_for_library(guard, frame, size)) {
         guard->dropped++;
         return 0;
     }
@@ -234,7 +243,7 @@ size_t epg_xrce_guard(epg_xrce_guard_t *guard, uint8_t *frame, size_t size)
     if (left > HEADER) {
         return left;
     }
-    if (reliable && left > 0) {
+    if (frame[1] == RELIABLE && left > 0) {
         return make_empty(frame);
     }
     guard->dropped += guard->taken ? 0U : 1U;

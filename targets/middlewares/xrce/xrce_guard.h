@@ -22,9 +22,6 @@
 
 #include "xrce_services.h"
 
-/** The id of the session.  With an id of 0x80 or more, frames do not contain the client's key. */
-#define EPG_XRCE_SESSION_ID 0x81
-
 typedef struct epg_xrce_guard {
     const uxrSession *session;
     epg_xrce_services_t *services; /**< gets what belongs to their stream; NULL: the target has no services */

@@ -44,8 +44,14 @@ void epg_xrce_link_start(epg_xrce_link_t *link, const epg_stream_t *stream, uint
     *link = (epg_xrce_link_t){.stream = stream, .frame = frame, .frame_size = frame_size};
 }
 
-void epg_xrce_link_reset(epg_xrce_link_t *link)
+void epg_xrce_link_drop(epg_xrce_link_t *link)
 {
+    const epg_stream_t *stream = link->stream;
+    for (size_t taken = 0; taken < MOST_BYTES; taken += sizeof link->chunk) {
+        if (stream->read(stream->context, link->chunk, sizeof link->chunk) == 0) {
+            break;
+        }
+    }
     link->part = OUTSIDE;
     link->escaped = false;
     link->chunk_length = 0;

@@ -46,8 +46,8 @@ typedef struct epg_xrce_link {
 /** Starts on `stream`, with room for a received frame of `frame_size` bytes. */
 void epg_xrce_link_start(epg_xrce_link_t *link, const epg_stream_t *stream, uint8_t *frame, size_t frame_size);
 
-/** Drops a frame that has only partly arrived. */
-void epg_xrce_link_reset(epg_xrce_link_t *link);
+/** Drops all bytes that have arrived: while nobody is connected, so that the next agent's session begins without them. */
+void epg_xrce_link_drop(epg_xrce_link_t *link);
 
 /** Returns the number of bytes that a frame with `data` takes on the stream. */
 size_t epg_xrce_link_cost(const epg_xrce_link_t *link, const void *data, size_t size);

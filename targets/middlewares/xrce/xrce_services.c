@@ -9,8 +9,9 @@
 
 #include <string.h>
 
+#include <uxr/client/client.h>
+
 #include "epg/service.h"
-#include "xrce_guard.h"
 
 enum {
     HEADER = 4, /* bytes of a frame's header: session, stream, number */
@@ -74,12 +75,11 @@ static void collect(epg_xrce_services_t *services, const uint8_t *bytes, size_t 
     }
 }
 
-/** Returns true if the collected submessage is a request.  `service` is its service then. */
-static bool is_request(const epg_xrce_services_t *services, size_t *service)
+/** Returns true if a submessage of `size` bytes that begins with `head` is a request.  `service` is its service then. */
+static bool is_request(const epg_xrce_services_t *services, const uint8_t *head, size_t size, size_t *service)
 {
-    const uint8_t *head = services->head;
-    if (services->collected < EPG_XRCE_SERVICE_HEAD || head[0] != DATA || (head[1] & LITTLE_ENDIAN_FLAG) == 0 ||
-        (head[1] & FORMAT_FLAGS) != 0 || number_at(head + 2) != services->collected - SUBHEADER ||
+    if (size < EPG_XRCE_SERVICE_HEAD || head[0] != DATA || (head[1] & LITTLE_ENDIAN_FLAG) == 0 ||
+        (head[1] & FORMAT_FLAGS) != 0 || number_at(head + 2) != size - SUBHEADER ||
         (head[7] & 0x0FU) != UXR_REPLIER_ID) {
         return false;
     }
@@ -94,7 +94,7 @@ static void finish_request(epg_xrce_services_t *services)
     const epg_service_state_t *state = services->node->target->service_state;
     const size_t size = services->collected - EPG_XRCE_SERVICE_HEAD;
     size_t service = 0;
-    if (!is_request(services, &service) || size > state->request_size) {
+    if (!is_request(services, services->head, services->collected, &service) || size > state->request_size) {
         services->node->malformed++;
     } else if (epg_service_request(services->node, service, state->request, size, services->now_ns) ==
                EPG_SERVICE_TAKEN) {
@@ -125,6 +125,19 @@ static bool take(epg_xrce_services_t *services, const uint8_t *submessage, size_
     return true;
 }
 
+/** Looks at a frame that must wait, `distance` after the expected one.  A request to disable does not wait. */
+static void look_ahead(epg_xrce_services_t *services, unsigned int distance, const uint8_t *body, size_t size)
+{
+    const epg_node_t *node = services->node;
+    const uint16_t mark = (uint16_t)(1U << distance);
+    size_t service = 0;
+    if ((services->stopped & mark) == 0 && is_request(services, body, size, &service) &&
+        epg_service_is_stop(node, service, body + EPG_XRCE_SERVICE_HEAD, size - EPG_XRCE_SERVICE_HEAD)) {
+        services->stopped |= mark;
+        epg_stop(node->target->control, EPG_STOP_SERVICE);
+    }
+}
+
 bool epg_xrce_services_receive(epg_xrce_services_t *services, uint16_t number, const uint8_t *body, size_t size,
                                bool ignore)
 {
@@ -139,14 +152,20 @@ bool epg_xrce_services_receive(epg_xrce_services_t *services, uint16_t number, c
     if (ahead(services->announced, number) < 0x8000U) {
         services->announced = (uint16_t)(number + 1U);
     }
-    if (distance > 0) {
-        return true; /* the agent sends it again after the frames before it */
-    }
-    if (!ignore && !epg_service_idle(services->node)) {
-        services->held = true;
+    if (distance > 0 || (!ignore && !epg_service_idle(services->node))) {
+        if (!ignore) {
+            look_ahead(services, distance, body, size); /* the agent sends it again after the frames before it */
+        }
+        services->held = services->held || distance == 0;
         return true;
     }
     services->expected++;
+    services->node->target->service_state->stopped = (services->stopped & 1U) != 0;
+    services->stopped = (uint16_t)(services->stopped >> 1);
+    services->node->target->service_state->overtaken = services->stopped != 0 || services->stale > 0;
+    if (services->stale > 0) {
+        services->stale--;
+    }
     return ignore || take(services, body, size);
 }
 
@@ -317,6 +336,9 @@ static void end_reply(epg_xrce_services_t *services)
 void epg_xrce_services_poll(epg_xrce_services_t *services, uint64_t now_ns)
 {
     services->now_ns = now_ns;
+    if (!services->node->services_clean) {
+        services->stale = ahead(services->expected, services->announced);
+    }
     if (services->count == 0 && epg_service_poll(services->node, now_ns)) {
         begin_reply(services);
     }

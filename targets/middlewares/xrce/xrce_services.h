@@ -26,6 +26,9 @@
 #include "epg/node.h"
 #include "xrce_link.h"
 
+/** The id of the session.  With an id of 0x80 or more, frames do not contain the client's key. */
+#define EPG_XRCE_SESSION_ID 0x81
+
 /** The number of the stream, in both directions.  The library uses 0x80 for the reliable topics. */
 #define EPG_XRCE_SERVICE_STREAM 0x81
 
@@ -44,6 +47,8 @@ typedef struct epg_xrce_services {
     uint16_t announced;                  /**< number after the newest frame that the agent is known to have sent */
     bool acknowledge;                    /**< an ACKNACK must be sent */
     bool held;                           /**< a frame was refused because a request is in work */
+    uint16_t stopped;                    /**< bit i: frame `expected` + i, which waits, has stopped the target */
+    uint16_t stale;                      /**< frames from `expected` on that arrived before a stop of something else */
     size_t collected;                    /**< bytes of the submessage whose fragments have arrived so far */
     uint8_t head[EPG_XRCE_SERVICE_HEAD]; /**< its first bytes; those after them are in the node's buffer */
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 Bare metal: the control side runs in the interrupt of a timer, the communication
 # side in an interrupt of the lowest priority.
 
-include("${CMAKE_CURRENT_LIST_DIR}/../mcu/mcu.cmake")
+include("${CMAKE_CURRENT_LIST_DIR}/../../mcu/mcu.cmake")
 
 # Called by epg_add_target(): adds the port layer to target <name>.
 function(_epg_bare_metal_target name)

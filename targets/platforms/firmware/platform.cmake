@@ -9,7 +9,7 @@ function(_epg_firmware_target name)
     add_library(epg_firmware STATIC EXCLUDE_FROM_ALL "${folder}/src/firmware.c")
     target_include_directories(epg_firmware PUBLIC "${folder}/include")
     target_link_libraries(epg_firmware PUBLIC epg_runtime)
-    set_target_properties(epg_firmware PROPERTIES C_STANDARD 11 C_STANDARD_REQUIRED ON)
+    _epg_compiler_options(epg_firmware)
   endif()
   target_link_libraries(${name} PUBLIC epg_firmware)
   # Models use sin() and other functions of the mathematical library.

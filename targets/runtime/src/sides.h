@@ -9,13 +9,6 @@
 #include "epg/access.h"
 #include "epg/control.h"
 
-/** Bits of the word `request`. */
-enum {
-    EPG_REQUEST_ENABLE = 1,
-    EPG_REQUEST_LEASED = 2,
-    EPG_REQUEST_BITS = 3 /**< all of them; the bits above are a number, which makes each request a new one */
-};
-
 /** The word `lease` has the unit 2^EPG_LEASE_SHIFT ns. */
 enum { EPG_LEASE_SHIFT = 20 };
 

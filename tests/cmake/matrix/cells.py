@@ -86,6 +86,9 @@ PAIRWISE = [
 ]
 """Cells in which every pair of values of two columns (way, convention, CMake, generator) occurs at least once."""
 
+EACH = [PAIRWISE[4 * row + (row + row // 4) % 4] for row in range(len(WAYS))]
+"""One cell of :data:`PAIRWISE` for each way; each of the four conventions occurs with both CMakes."""
+
 
 def check(cell: Cell, have: Installations, folder: Path) -> None:
     """Configures, builds and runs the cell's project in ``folder`` like its user; asserts all results."""
@@ -99,7 +102,8 @@ def check(cell: Cell, have: Installations, folder: Path) -> None:
     (project / "find_epg.cmake").write_text(f"{found.text}{SAY_WHICH}")
 
     ignored = ("EPG_", "CMAKE_", "PICO_", "ZEPHYR_", "Python3_", "VIRTUAL_ENV")
-    environment = {key: value for key, value in os.environ.items() if not key.startswith(ignored)}
+    kept = [key for key in os.environ if not key.startswith(ignored) or key.endswith("_COMPILER_LAUNCHER")]
+    environment = {key: os.environ[key] for key in kept}
     environment |= {"ZEPHYR_BASE": str(project / "base"), **found.environment}
     # ctest's PYTHONPATH has the packages that tests need, and EPG itself
     paths = [path for path in environment.pop("PYTHONPATH", "").split(os.pathsep) if path and Path(path) != ROOT]

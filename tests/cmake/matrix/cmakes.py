@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from epg.bootstrap import cache_folder
+from epg.generator.bootstrap import cache_folder
 
 OLDEST = "3.22.6"
 

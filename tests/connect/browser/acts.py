@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
-import time
+import os
 from collections.abc import Callable
 from typing import Any
+
+from tests import waiting
+from tests.live.target import LEASE
 
 
 def handle(page: Any, side: str, name: str) -> Any:
@@ -49,9 +52,28 @@ def tab_to(page: Any, condition: str, key: str = "Tab") -> None:
     raise AssertionError(f"Tab does not lead to: {condition}")
 
 
-def until(page: Any, expression: str, seconds: float = 5) -> None:
+def processes(browser: Any) -> list[dict[str, Any]]:
+    """The processes of a browser, each with its ``id`` and ``type``."""
+    found: list[dict[str, Any]] = browser.new_browser_cdp_session().send("SystemInfo.getProcessInfo")["processInfo"]
+    return found
+
+
+def late(browser: Any, *others: int) -> float:
+    """Seconds for which this test, the browser and other processes had no processor so far."""
+    return sum(map(waiting.waited, (os.getpid(), *others, *(each["id"] for each in processes(browser)))))
+
+
+def drive(act: Callable[[], None], is_driven: Callable[[], bool], browser: Any, *others: int) -> None:
+    """Acts until the robot is driven.  As a user does, it acts again if a late computer has made the page late."""
+    for _ in range(5):
+        before = late(browser, *others)
+        act()
+        if waiting.soon(is_driven, 3):
+            return
+        assert late(browser, *others) > before + LEASE, "the robot is not enabled, and the computer was not late"
+    raise AssertionError("the robot is not enabled")
+
+
+def until(page: Any, expression: str, seconds: float = waiting.PATIENCE) -> None:
     """Waits until a JavaScript expression is true.  Playwright's own function needs eval(), which the page forbids."""
-    end = time.monotonic() + seconds
-    while not page.evaluate(expression):
-        assert time.monotonic() < end, expression
-        time.sleep(0.02)
+    waiting.until(lambda: page.evaluate(expression), expression, seconds, pause=0.02)

@@ -7,12 +7,19 @@ from __future__ import annotations
 import secrets
 import shutil
 from collections.abc import Callable, Iterator
+from functools import partialmethod
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from tests.emulator.toolchain import Missing
+from tests.live.witness import build_robot
+from tests.waiting import PATIENCE
+
+from .firefox import Firefox
 from .served import ROOT, Served
+from .way import Way
 
 FLAGS = [
     "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
@@ -22,17 +29,23 @@ FLAGS = [
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 
 
+def _text_to_see(page: Any, everywhere: Callable[..., Any], text: Any, **how: Any) -> Any:
+    """The elements of a page with a text, but not the copy of it that screen readers announce a moment later."""
+    return everywhere(page, text, **how).and_(page.locator(":not(#said)"))
+
+
 @pytest.fixture(scope="session")
 def launch() -> Iterator[Callable[[], Any]]:
     """Starts a browser."""
     try:
-        from playwright.sync_api import sync_playwright
+        from playwright.sync_api import Page, sync_playwright
     except ImportError:
         pytest.skip("playwright is not installed: pip install playwright")
     program = next(filter(None, map(shutil.which, NAMES)), None)
     if program is None:
-        pytest.skip("Chromium is not installed: apt install chromium")
-    with sync_playwright() as playwright:
+        pytest.skip("Chromium is not installed: sudo apt install chromium")
+    with sync_playwright() as playwright, pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Page, "get_by_text", partialmethod(_text_to_see, Page.get_by_text))
         yield lambda: playwright.chromium.launch(executable_path=program, args=FLAGS)
 
 
@@ -65,7 +78,7 @@ def open_page(browser: Any) -> Iterator[Callable[..., Any]]:
     def make(address: str, **arguments: Any) -> Any:
         settings = {"viewport": {"width": 1280, "height": 800}, "reduced_motion": "reduce", **arguments}
         context = browser.new_context(**settings)
-        context.set_default_timeout(5000)
+        context.set_default_timeout(1000 * PATIENCE)
         contexts.append(context)
         page = context.new_page()
         page.on("console", hear)
@@ -147,3 +160,34 @@ def started(browser: Any, model: Path) -> Iterator[Served]:
     """The start page for that model."""
     with Served(model) as served:
         yield served
+
+
+@pytest.fixture(scope="session")
+def robot_program(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The program of a robot whose actuator notes when it was driven."""
+    return build_robot(tmp_path_factory.mktemp("robot"))
+
+
+@pytest.fixture
+def way(robot_program: Path, tmp_path: Path, launch: Callable[[], Any]) -> Iterator[Way]:
+    """A page that is not yet connected with a robot, and all that is between them."""
+    found = Way(robot_program, tmp_path, launch)
+    yield found
+    found.close()
+
+
+@pytest.fixture(scope="session")
+def started_firefox() -> Iterator[Firefox]:
+    try:
+        firefox = Firefox()
+    except Missing as problem:
+        pytest.skip(str(problem))
+    with firefox:
+        yield firefox
+
+
+@pytest.fixture
+def firefox(started_firefox: Firefox) -> Iterator[Firefox]:
+    started_firefox.resize(1280, 800)
+    yield started_firefox
+    assert started_firefox.complaints() == []

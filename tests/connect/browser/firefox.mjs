@@ -10,16 +10,28 @@ import { pathToFileURL } from "node:url";
 const [program, puppeteerFolder] = process.argv.slice(2);
 const entry = "lib/esm/puppeteer/puppeteer-core.js";
 const { default: puppeteer } = await import(pathToFileURL(`${puppeteerFolder}/${entry}`));
-const browser = await puppeteer.launch({ browser: "firefox", executablePath: program, headless: true });
-const page = await browser.newPage();
-const complaints = []; // errors and warnings that the page has caused
+let browser = await puppeteer.launch({ browser: "firefox", executablePath: program, headless: true });
+const firefox = browser.process();
+const endpoint = browser.wsEndpoint();
+const complaints = []; // errors and warnings that the pages have caused
+const tabs = [];
+let page = await newTab(); // the tab in front
 
-page.on("console", (message) => {
-  if (["error", "warn"].includes(message.type())) complaints.push(message.text());
-});
-page.on("dialog", (dialog) => dialog.accept()); // the question before a page with unsaved changes is left
-page.on("pageerror", (error) => complaints.push(String(error)));
-await page.setViewport({ width: 1280, height: 800 });
+async function newTab() {
+  const tab = watched(await browser.newPage());
+  await tab.setViewport({ width: 1280, height: 800 });
+  tabs.push(tab);
+  return tab;
+}
+
+function watched(tab) {
+  tab.on("console", (message) => {
+    if (["error", "warn"].includes(message.type())) complaints.push(message.text());
+  });
+  tab.on("dialog", (dialog) => dialog.accept()); // the question before a page with unsaved changes is left
+  tab.on("pageerror", (error) => complaints.push(String(error)));
+  return tab;
+}
 
 // The middle of an element in the window, as soon as it no longer moves. Another element may take its place meanwhile.
 async function middle(selector) {
@@ -37,8 +49,25 @@ async function middle(selector) {
 
 const acts = {
   open: async (address) => void (await page.goto(address)),
+  newTab: async () => {
+    page = await newTab();
+  },
+  showTab: async (number) => {
+    page = tabs[number];
+    await page.bringToFront();
+  },
+  closeTab: async () => {
+    await tabs.pop().close();
+    page = tabs.at(-1);
+  },
   evaluate: (expression) => page.evaluate(expression),
   click: async (selector) => page.mouse.click(...(await middle(selector))),
+  hold: async (selector, ms) => {
+    await page.mouse.move(...(await middle(selector)));
+    await page.mouse.down();
+    await new Promise((resolve) => setTimeout(resolve, ms));
+    await page.mouse.up();
+  },
   drag: async (from, to) => {
     const start = await middle(from);
     await page.mouse.move(...start);
@@ -49,6 +78,8 @@ const acts = {
   },
   focus: (selector) => page.focus(selector),
   press: (key) => page.keyboard.press(key),
+  down: (key) => page.keyboard.down(key),
+  up: (key) => page.keyboard.up(key),
   type: (text) => page.keyboard.type(text),
   resize: (width, height) => page.setViewport({ width, height }),
   screenshot: async (path) => void (await page.screenshot({ path })),
@@ -63,6 +94,14 @@ const acts = {
     return value;
   },
   complaints: () => complaints.splice(0),
+  // Firefox keeps a record of each request for the program that drives it: on a live page 0.3 MB in a second.
+  leave: () => browser.disconnect(),
+  comeBack: async () => {
+    browser = await puppeteer.connect({ browserWSEndpoint: endpoint, protocol: "webDriverBiDi" });
+    const pages = await browser.pages(); // the first ones are not from newTab()
+    tabs.splice(0, tabs.length, ...pages.slice(-tabs.length).map(watched));
+    page = tabs.at(-1);
+  },
 };
 
 for await (const line of createInterface({ input: process.stdin })) {
@@ -76,3 +115,4 @@ for await (const line of createInterface({ input: process.stdin })) {
   process.stdout.write(`${JSON.stringify(answer)}\n`);
 }
 await browser.close();
+firefox.kill();

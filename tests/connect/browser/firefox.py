@@ -6,15 +6,17 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import shutil
 import subprocess
-import time
+from collections.abc import Iterator
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
 from tests.emulator.toolchain import Missing, node, npm_package
+from tests.waiting import PATIENCE, until
 
 from .axe import HERE
 
@@ -22,7 +24,7 @@ NAMES = ("firefox-esr", "firefox")
 
 
 class Firefox:
-    """One page of Firefox.
+    """Tabs of Firefox; all methods are for the one in front.
 
     Elements are named by selectors of CSS and of Puppeteer: ``::-p-aria(NAME)``, ``HOST >>> IN_ITS_SHADOW``.
     """
@@ -31,7 +33,7 @@ class Firefox:
         """Raises Missing."""
         program = next(filter(None, map(shutil.which, NAMES)), None)
         if program is None:
-            raise Missing("Firefox is not installed: apt install firefox-esr")
+            raise Missing("Firefox is not installed: sudo apt install firefox-esr")
         command = [node(), str(HERE / "firefox.mjs"), program, str(npm_package(HERE, "puppeteer-core"))]
         self._process = subprocess.Popen(
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, encoding="utf-8"
@@ -63,6 +65,20 @@ class Firefox:
     def evaluate(self, expression: str) -> Any:
         return self._do("evaluate", expression)
 
+    def new_tab(self) -> None:
+        self._do("newTab")
+
+    def show_tab(self, number: int) -> None:
+        self._do("showTab", number)
+
+    def close_tab(self) -> None:
+        """Closes the newest tab."""
+        self._do("closeTab")
+
+    def hold(self, selector: str, seconds: float) -> None:
+        """Holds the mouse button over an element."""
+        self._do("hold", selector, 1000 * seconds)
+
     def click(self, selector: str) -> None:
         self._do("click", selector)
 
@@ -76,8 +92,28 @@ class Firefox:
         for key in keys:
             self._do("press", key)
 
+    def down(self, key: str) -> None:
+        self._do("down", key)
+
+    def up(self, key: str) -> None:
+        self._do("up", key)
+
     def type(self, text: str) -> None:
         self._do("type", text)
+
+    @property
+    def process(self) -> int:
+        """The number of the process that has started the browser."""
+        return self._process.pid
+
+    @contextlib.contextmanager
+    def left_alone(self) -> Iterator[None]:
+        """Nobody drives Firefox meanwhile: it keeps a record of each request for a program that does."""
+        self._do("leave")
+        try:
+            yield
+        finally:
+            self._do("comeBack")
 
     def resize(self, width: int, height: int) -> None:
         self._do("resize", width, height)
@@ -94,8 +130,5 @@ class Firefox:
         found: list[str] = self._do("complaints")
         return found
 
-    def until(self, expression: str, seconds: float = 10) -> None:
-        end = time.monotonic() + seconds
-        while not self.evaluate(f"Boolean({expression})"):
-            assert time.monotonic() < end, expression
-            time.sleep(0.05)
+    def until(self, expression: str, seconds: float = PATIENCE) -> None:
+        until(lambda: self.evaluate(f"Boolean({expression})"), expression, seconds, pause=0.05)

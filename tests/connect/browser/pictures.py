@@ -9,13 +9,14 @@ This needs the same tools as the tests in this folder, and the Pico SDK.
 from __future__ import annotations
 
 import io
+import re
 import shutil
 import subprocess
 import tempfile
 from pathlib import Path
 from typing import Any
 
-from epg.bootstrap import ensure
+from epg.generator.bootstrap import ensure
 from tests.emulator.toolchain import arm_gcc, pico_sdk
 
 from .acts import until
@@ -141,7 +142,7 @@ def _live(browser: Any, place: Path, folder: Path) -> None:
             ("pan_subscriber", "0.5", 2500),
             ("Pan\\PID\\kp", "2.2", 1500),
         ):
-            field = page.get_by_role("textbox", name=name, exact=True)
+            field = page.get_by_role("textbox", name=re.compile(f"^{re.escape(name)}( |$)"))
             field.fill(value)
             field.press("Enter")
             page.wait_for_timeout(wait)

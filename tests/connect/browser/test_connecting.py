@@ -13,6 +13,10 @@ from typing import Any
 import pytest
 import yaml
 
+from epg.generator.diagnostics import Diagnostics
+from epg.new.new_project import ProjectRequest, write_project
+from tests.connect.robots import jiwy_export_project
+
 from .acts import drag, field, handle, port, save, until
 from .conftest import Project, copy_jiwy
 from .served import ROOT, Served
@@ -312,6 +316,61 @@ def test_a_message_without_a_port_shows_its_line(jiwy: Project, open_page: Open)
     assert dialog.locator("pre").count() == 2, "the place and the file that extends it"
     page.keyboard.press("Escape")
     dialog.wait_for(state="detached")
+
+
+def test_a_proposed_edit_is_applied(jiwy: Project, open_page: Open) -> None:
+    right = jiwy.text()
+    jiwy.write(("  pwm_tilt: pwm_tilt\n", "  pwm_tilt: pwm_tlit\n"))
+    page = open_page(jiwy.address)
+    page.get_by_role("button", name="Apply: replace pwm_tlit by pwm_tilt").click()
+    page.get_by_text("No problems", exact=True).wait_for()
+    assert page.get_by_role("button", name="Apply: replace").count() == 0
+    save(page)
+    assert jiwy.text() == right
+
+
+def test_a_missing_wire_is_a_line_to_insert(jiwy: Project, open_page: Open) -> None:
+    right = jiwy.text()
+    jiwy.write(UNBOUND)
+    page = open_page(jiwy.address)
+    page.get_by_role("button", name="Apply: add 'inputs: {position_tilt: encoder_tilt}'").click()
+    page.get_by_text("No problems", exact=True).wait_for()
+    save(page)
+    assert jiwy.text() == right
+
+
+def test_each_remedy_of_homing_is_a_button(open_page: Open, tmp_path: Path) -> None:
+    """A controller without an output for the reset has one remedy for each guard, one that has it two."""
+    folder = jiwy_export_project(tmp_path)
+    with Served(folder) as served:
+        served.post("accept")
+        page = open_page(served.address)
+        apply = page.get_by_role("button", name="Apply: ")
+        for name in ("guard_pan", "guard_tilt"):
+            assert apply.all_inner_texts() == ["Apply"] * (2 if name == "guard_pan" else 1)
+            page.get_by_role("button", name=f"Apply: write 'homing: null' in '{name}' of robot.tcf").click()
+            page.get_by_role("button", name=f"Apply: write 'homing: null' in '{name}'").wait_for(state="detached")
+        assert {each["severity"] for each in served.state()["diagnostics"]} == {"warning"}
+        save(page)
+    assert "guard_pan: {homing: null}\n  guard_tilt: {homing: null}\n" in (folder / "robot.tcf").read_text()
+
+
+def test_two_remedies_are_two_buttons(open_page: Open, tmp_path: Path) -> None:
+    folder = tmp_path / "robot"
+    write_project(ProjectRequest("robot", folder, "host_jiwy", ROOT / "examples/jiwy/model"), Diagnostics())
+    bindings = folder / "robot.bindings.yaml"
+    right = bindings.read_text()
+    bindings.write_text(right.replace("encoder_tilt.reset", "unconnected"))
+    sentences = ["write 'encoder_reset_tilt: encoder_tilt.reset'", "write 'homing: null' in 'guard_tilt' of robot.tcf"]
+    with Served(folder) as served:
+        page = open_page(served.address)
+        buttons = page.get_by_role("button", name="Apply: ")
+        buttons.first.wait_for()
+        assert buttons.all_inner_texts() == [f"Apply: {sentence}" for sentence in sentences]
+        buttons.first.click()
+        page.get_by_text("No problems", exact=True).wait_for()
+        save(page)
+    assert bindings.read_text() == right
 
 
 def test_conversion(jiwy: Project, open_page: Open) -> None:

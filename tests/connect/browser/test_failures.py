@@ -9,75 +9,17 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
-import sys
 import time
-from collections.abc import Callable, Iterator
-from pathlib import Path
-from typing import Any
+from collections.abc import Callable
 
 import pytest
 
 from epg.live.client import Client
-from epg.live.port import Port
-from tests.live import bridge
+from epg.live.port import SerialPort
 from tests.live.target import LEASE
-from tests.live.witness import CYCLE, PROJECT, Robot, build_robot
+from tests.live.witness import CYCLE, Span
 
-from .served import Served
-
-
-class Line:
-    """The bridge between the robot and the server."""
-
-    def __init__(self, robot: Robot, port: Path) -> None:
-        self.port = port
-        command = [sys.executable, bridge.__file__, str(robot.port), str(port)]
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
-        assert self._said() == "ready"
-
-    def _said(self) -> str:
-        assert self.process.stdout is not None
-        return self.process.stdout.readline().strip()
-
-    def become(self, number: signal.Signals) -> float:
-        """Makes the line worse; returns the time from which on it is."""
-        self.process.send_signal(number)
-        return float(self._said())
-
-    def close(self) -> None:
-        self.process.kill()
-        self.process.communicate()
-
-
-class Way:
-    """A robot, its line, EPG's server, and a browser with its page."""
-
-    def __init__(self, program: Path, folder: Path, launch: Callable[[], Any]) -> None:
-        self.robot = Robot(program, folder)
-        self.line = Line(self.robot, folder / "line")
-        self.epg = Served(PROJECT)
-        self.browser = launch()
-        self.page = self.browser.new_page(viewport={"width": 1280, "height": 800})
-
-    def connect(self) -> None:
-        self.page.goto(self.epg.address)
-        self.page.get_by_role("tab", name="Live").click()
-        self.page.get_by_label("Port").fill(str(self.line.port))
-        self.page.get_by_role("button", name="Connect", exact=True).click()
-        self.page.get_by_role("button", name="Larger").click()
-        self.page.get_by_role("button", name="Enable (hold)").wait_for()
-
-    def renderers(self) -> list[int]:
-        """The processes that run the pages of the browser."""
-        session = self.browser.new_browser_cdp_session()
-        found = session.send("SystemInfo.getProcessInfo")["processInfo"]
-        return [each["id"] for each in found if each["type"] == "renderer"]
-
-    def close(self) -> None:
-        self.line.close()
-        self.robot.close()
-        self.epg.kill()
+from .way import Way
 
 
 def killed(processes: Callable[[Way], list[int]], number: signal.Signals) -> Callable[[Way], float]:
@@ -122,32 +64,24 @@ FAILURES: dict[str, Callable[[Way], float]] = {
 """Each returns the time from which on the page cannot reach the robot any more."""
 
 
-@pytest.fixture(scope="module")
-def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return build_robot(tmp_path_factory.mktemp("robot"))
-
-
-@pytest.fixture
-def way(program: Path, tmp_path: Path, launch: Callable[[], Any]) -> Iterator[Way]:
-    found = Way(program, tmp_path, launch)
-    yield found
-    for process in found.renderers():
-        os.kill(process, signal.SIGCONT)
-    found.browser.close()
-    found.close()
-
-
 def enable(way: Way) -> None:
     way.connect()
-    way.page.get_by_role("button", name="Enable (hold)").click(delay=700)
-    way.robot.wait(driven=True)
+    way.enable()
 
 
 def move(way: Way) -> None:
     way.connect()
-    way.page.get_by_role("button", name="Move motor forwards").hover()
+    way.page.locator("button[aria-label='Move motor forwards']:enabled").hover()
     way.page.mouse.down()
     way.robot.wait(driven=True)
+
+
+def end_of(way: Way, at: float) -> Span:
+    """Waits until the actuator is safe, and returns the only time in which it was driven."""
+    way.robot.wait(driven=False)
+    spans = way.robot.spans()
+    assert len(spans) == 1, [tuple(round(1000 * (each - at)) for each in span) for span in spans]
+    return spans[0]
 
 
 @pytest.mark.parametrize("failure", FAILURES)
@@ -157,23 +91,30 @@ def test_the_actuator_is_safe_within_300_ms_and_a_cycle(way: Way, begin: Callabl
     way.page.wait_for_timeout(1000)
     assert way.robot.is_driven(), "it is driven for longer than a lease or a pulse"
     at = FAILURES[failure](way)
-    way.robot.wait(driven=False)
-    (span,) = way.robot.spans()
+    span = end_of(way, at)
     assert at < span.last + LEASE, "the failure was the cause"
     assert span.last <= at + LEASE + CYCLE, f"driven for {1000 * (span.last - at):.1f} ms after the failure"
 
 
-@pytest.mark.parametrize("failure", ["page_closed", *FAILURES])
-def test_a_robot_that_another_program_has_enabled_stays_enabled(way: Way, failure: str) -> None:
-    with Port(way.line.port) as port:
+@pytest.mark.parametrize("begin", [enable, move])
+def test_what_a_page_has_sent_before_it_was_killed_drives_no_longer(way: Way, begin: Callable[[Way], None]) -> None:
+    """On a slow line, its newest answers are still on their way."""
+    way.line.become(signal.SIGHUP)
+    begin(way)
+    way.page.wait_for_timeout(1000)
+    assert way.robot.is_driven(), "a slow line alone does not stop it"
+    at = killed(of_page, signal.SIGKILL)(way)
+    span = end_of(way, at)
+    assert at < span.last <= at + LEASE + CYCLE, f"driven for {1000 * (span.last - at):.1f} ms after the failure"
+
+
+def test_a_robot_that_another_program_has_enabled_stays_enabled(way: Way) -> None:
+    with SerialPort(way.line.port) as port:
         client = Client(port)
-        client.command("enable")
+        client.enable(unattended=True)
         client.stop()
     way.robot.wait(driven=True)
     way.connect()
-    if failure == "page_closed":
-        way.page.close()
-    else:
-        FAILURES[failure](way)
+    way.page.close()
     time.sleep(2 * LEASE)
     assert [span.begin for span in way.robot.spans() if way.robot.is_driven()] == [way.robot.spans()[0].begin]

@@ -4,33 +4,13 @@
 from __future__ import annotations
 
 import secrets
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import Missing
-
 from .conftest import copy_jiwy
 from .firefox import Firefox
 from .served import Served
-
-
-@pytest.fixture(scope="module")
-def started_firefox() -> Iterator[Firefox]:
-    try:
-        firefox = Firefox()
-    except Missing as problem:
-        pytest.skip(str(problem))
-    with firefox:
-        yield firefox
-
-
-@pytest.fixture
-def firefox(started_firefox: Firefox) -> Iterator[Firefox]:
-    started_firefox.resize(1280, 800)
-    yield started_firefox
-    assert started_firefox.complaints() == []
 
 
 def handle(side: str, name: str) -> str:

@@ -44,7 +44,9 @@ def test_a_board_is_named_and_confirmed(open_page: Open, tools: Path, tmp_path: 
         write = dialog.get_by_role("button", name="Write to this board")
         dialog.get_by_text("2 boards are connected.").wait_for()
         assert write.is_disabled() and violations(page) == []
+        assert dialog.get_by_text("File: ").count() == 0, "each board can get another file"
         dialog.get_by_label(f"Pico {FIRST}").check()
+        assert dialog.get_by_text("File: ").inner_text() == "File: build/robot_firmware.elf"
         write.click()
         panel = page.get_by_role("tabpanel")
         panel.get_by_text("has the program of the target 'leader'").wait_for()

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from epg.diagnostics import Diagnostics
-from epg.new_project import ProjectRequest, write_project
+from epg.generator.diagnostics import Diagnostics
+from epg.new.new_project import ProjectRequest, write_project
 
 from .acts import field, until
 from .conftest import Project
@@ -43,6 +43,8 @@ def test_generates_shows_errors_and_cancels(jiwy: Project, open_page: Open) -> N
     generate.click()
     asked = page.get_by_role("dialog", name="Run these commands?")
     assert f"cmake -S {jiwy.folder} -B {jiwy.folder}/build" in asked.locator("pre").inner_text()
+    assert asked.locator("pre").evaluate("it => it.scrollWidth <= it.clientWidth"), "commands are in sight as a whole"
+    assert asked.evaluate("it => it.scrollWidth <= it.clientWidth")
     page.keyboard.press("Escape")
     assert jiwy.epg.state()["build"]["state"] == "idle" and not (jiwy.folder / "build").exists()
     generate.click()

@@ -41,7 +41,7 @@ def large(browser: Any, tmp_path: Path) -> Iterator[Served]:
         encoding="utf-8",
     )
     components = "".join(
-        f"  command_{n}: {{kind: ros_subscriber, topic: command_{n}}}\n"
+        f"  command_{n}: {{kind: ros_subscriber, topic: command_{n}, unit: rad}}\n"
         f"  value_{n}: {{kind: ros_publisher, topic: value_{n}}}\n"
         for n in range(COMPONENTS)
     )

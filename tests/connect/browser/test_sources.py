@@ -8,7 +8,6 @@ import json
 import secrets
 import shutil
 import subprocess
-import time
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +18,7 @@ from tests.connect.conftest import ROOT, one_axis_project
 from tests.connect.page import session_of
 from tests.connect.test_overview import write_pair
 from tests.emulator.toolchain import npm_package, skip_if_missing
+from tests.waiting import until
 
 from .axe import HERE
 
@@ -120,11 +120,8 @@ def _opened(folder: Path) -> list[dict[str, Any]]:
     bindings = arm / "arm.bindings.yaml"
     text = bindings.read_text(encoding="utf-8")
     bindings.write_text("inputs: [\n", encoding="utf-8")
-    until = time.monotonic() + 10
-    conflict = session.state()
-    while conflict["draft"]["conflict"] is None and time.monotonic() < until:
-        conflict = session.wait(conflict["version"], 1)  # other work of the session also changes its version
-    opened.append(conflict)
+    until(lambda: session.wait(session.state()["version"], 1)["draft"]["conflict"] is not None)
+    opened.append(session.state())
     bindings.write_text(text, encoding="utf-8")
     opened.append(session.act("reload", {}))
     assert opened[0]["units"] and opened[1]["proposals"] and opened[2]["diagnostics"][0]["notes"]

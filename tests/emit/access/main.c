@@ -119,7 +119,10 @@ static void use_one_by_one(void)
     CHECK(robot_get_product(&value) && value == 4.25);
     CHECK(robot_get_gain(&value) && value == 4.0);
     CHECK(robot_get_steps_parameter(&value) && value == 0.25);
-    CHECK(robot_set_speed(-3.0));
+    CHECK(!robot_set_speed(-3.0)); /* outside of its limits, which are in mm/s */
+    run_cycles(1);
+    CHECK(robot_get_speed(&value) && value == 500.0);
+    CHECK(robot_set_speed(-2.0));
     run_cycles(1);
     CHECK(robot_get_speed(&value) && value == -2000.0);
     CHECK(robot_status(&status) && status.enabled);

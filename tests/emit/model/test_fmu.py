@@ -4,14 +4,15 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 
-from epg.emit.model import emit_model, model_build
-from epg.models.details import FmuExport
+from epg.generator.emit.model import emit_model, model_build
+from epg.generator.importers.fmu.fmu_export import FmuExport
 from tests.models.fmus import FMU2, FMU3, changed, pack, run_fmu2, run_fmu3
-from tests.models.harness import Library, build, loaded, run, run_program, run_wrapper
+from tests.models.harness import INCLUDE, Library, build, loaded, run, run_program, run_wrapper, sources_of_variables
 
 STEPS = 300
 RUN = {FMU2: run_fmu2, FMU3: run_fmu3}
@@ -28,6 +29,106 @@ def test_gives_its_own_numbers(folder: Path, tmp_path: Path) -> None:
     assert run_wrapper(library, STEPS, options=sanitize) == expected
     archive = pack(folder, tmp_path / "packed.fmu", {"binaries/win64/x.dll": b"MZ", "resources/a.txt": b"?"})
     assert run_wrapper(build(loaded(archive), "tilt", tmp_path), STEPS) == expected
+
+
+@pytest.mark.parametrize("folder", [FMU2, FMU3], ids=["fmi2", "fmi3"])
+def test_every_step_has_the_same_size(folder: Path, tmp_path: Path) -> None:
+    """FMUs compare the size of a step, and count with it.  The time is a multiple of it, not a sum."""
+    if folder == FMU2:
+        file, size, count = "sources/servo.c", 0.001, "self->integers[1]"
+        old = "self->integers[1] = (int)((currentCommunicationPoint + communicationStepSize) * 1000.0 + 0.5);"
+    else:
+        file, size, count = "sources/axes.c", 0.002, "self->count"
+        old = "self->count += 1;"
+    new = f"""
+    if (communicationStepSize != {size} || currentCommunicationPoint != (double){count} * {size}) {{
+        return fmi{2 if folder == FMU2 else 3}Error;
+    }}
+    {count} += (int)(communicationStepSize / {size});"""
+    library = build(loaded(changed(folder, tmp_path / "fmu", file, (old, new))), "pan", tmp_path)
+    output = "steps" if folder == FMU2 else "count"
+    body = f"""
+    pan_init(a, &in, &out);
+    for (int k = 0; k < 1000; k++) {{ pan_step(a, &in, &out); }}
+    printf("%d %g\\n", pan_finite(a), out.{output});
+"""
+    assert program(body, [library], tmp_path / "run") == [[1, 1000]]
+
+
+def test_every_number_but_zero_is_true(tmp_path: Path) -> None:
+    """The output is the setpoint as soon as the servo is enabled."""
+    body = """
+    const double values[] = {0.0, -0.0, 1.0, 0.5, 0.25, 1e-300, -1.0, 2.0};
+    in.plant_setpoint = 0.5;
+    for (unsigned i = 0; i < sizeof values / sizeof values[0]; i++) {
+        in.enable = values[i];
+        pan_init(a, &in, &out);
+        printf("%g ", out.duty);
+    }
+"""
+    rows = program(body, [build(loaded(FMU2), "pan", tmp_path)], tmp_path / "run")
+    assert rows == [[0, 0, *[0.5] * 6]]
+
+
+def test_numbers_that_the_type_of_a_port_cannot_hold(tmp_path: Path) -> None:
+    """They are rounded to the nearest and limited; NaN is not a number of these types, so no step is taken with it."""
+    end = "    return fmi2OK;\n}\n\nfmi2Status fmi2GetReal"
+    change = (end, f"    self->integers[1] = self->integers[0];\n{end}")
+    folder = changed(FMU2, tmp_path / "fmu", "sources/servo.c", change)
+    body = """
+    const double values[] = {0.5, 2.5, -2.5, 0.49999999999999994, -1.2, 1e10, -1e10, 2147483647.4};
+    pan_init(a, &in, &out);
+    for (unsigned i = 0; i < sizeof values / sizeof values[0]; i++) {
+        in.mode = values[i];
+        pan_step(a, &in, &out);
+        printf("%.0f ", out.steps);
+    }
+    printf("%lu ", pan_clamped(a));
+    in.mode = 7.0;
+    pan_step(a, &in, &out);
+    in.mode = NAN;
+    pan_step(a, &in, &out);
+    printf("%d %.0f ", pan_finite(a), out.steps);
+    in.mode = 3.0;
+    in.enable = NAN;
+    pan_init(a, &in, &out);
+    printf("%d ", pan_finite(a));
+    in.enable = 1.0;
+    pan_init(a, &in, &out);
+    printf("%d\\n", pan_finite(a));
+"""
+    rows = program(body, [build(loaded(folder), "pan", tmp_path)], tmp_path / "run")
+    assert rows == [[1, 3, -3, 0, -1, 2147483647, -2147483648, 2147483647, 2, 0, 7, 0, 1]]
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_an_output_of_64_bits_is_a_whole_number_that_a_double_has(sign: int, tmp_path: Path) -> None:
+    change = ("self->count += 1;", f"self->count = {sign} * (1ll << 60);")
+    body = """
+    in.mask = 1.0;
+    in.gain = 1.0;
+    axes_init(a, &in, &out);
+    axes_step(a, &in, &out);
+    printf("%.17g %lu\\n", out.count, axes_clamped(a));
+"""
+    folder = changed(FMU3, tmp_path / "fmu", "sources/axes.c", change)
+    assert program(body, [build(loaded(folder), "axes", tmp_path)], tmp_path / "run") == [[sign * 2.0**53, 1]]
+
+
+def test_a_float_is_never_infinite(tmp_path: Path) -> None:
+    """The first output is setpoint times gain: the largest float, not infinity."""
+    body = """
+    in.setpoint_1 = 1.0;
+    in.mask = 1.0;
+    in.gain = 1e39;
+    axes_init(a, &in, &out);
+    printf("%d %.17g ", axes_finite(a), out.duty_1 + 1.0);
+    in.gain = NAN;
+    axes_step(a, &in, &out);
+    printf("%d\\n", axes_finite(a));
+"""
+    rows = program(body, [build(loaded(FMU3), "axes", tmp_path)], tmp_path / "run")
+    assert rows == [[1, float.fromhex("0x1.fffffep127"), 0]]
 
 
 def test_a_prefix_that_is_put_together(tmp_path: Path) -> None:
@@ -67,8 +168,8 @@ def test_arrays_with_a_size_of_their_own_and_text(tmp_path: Path) -> None:
     )
     model = loaded(folder)
     assert [port.name for port in model.inputs] == [p.name for p in loaded(FMU3).inputs]
-    assert isinstance(model.details, FmuExport)
-    assert (model.details.states, model.details.state_count) == ((1,), 3)
+    assert isinstance(model.code, FmuExport)
+    assert (model.code.states, model.code.state_count) == ((1,), 3)
     assert run_wrapper(build(model, "pan", tmp_path), 30) == run_fmu3(tmp_path / "direct", 30)
 
 
@@ -106,7 +207,8 @@ def program(body: str, libraries: list[Library], folder: Path, options: tuple[st
     """Lines of numbers of a program in which ``in`` and ``out`` are of the first library, ``a`` is its instance 0."""
     name = libraries[0].name
     includes = "".join(f'#include "{library.name}.h"\n' for library in libraries)
-    text = f"""{includes}#include <stdio.h>
+    text = f"""{includes}#include <math.h>
+#include <stdio.h>
 static {name}_inputs_t in;
 static {name}_outputs_t out;
 int main(void)
@@ -335,9 +437,9 @@ def test_links_for_microcontrollers(cpu: str, tmp_path: Path) -> None:
     """Without a heap of the C library: no code in the image allocates memory."""
     compiler = shutil.which("arm-none-eabi-gcc")
     if compiler is None:
-        pytest.skip("arm-none-eabi-gcc is missing: apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi")
+        pytest.skip("arm-none-eabi-gcc is not installed: sudo apt install gcc-arm-none-eabi libnewlib-arm-none-eabi")
     flags = [f"-mcpu={cpu}", "-mthumb", "-Os", "-std=c11", "-ffunction-sections", "-ffp-contract=off"]
-    objects = []
+    objects: list[Path] = []
     for name, model in (("pan", loaded(FMU2)), ("axes", loaded(pack(FMU3, tmp_path / "a.fmu")))):
         output = tmp_path / name
         for file, text in emit_model(model, name).items():
@@ -348,10 +450,19 @@ def test_links_for_microcontrollers(cpu: str, tmp_path: Path) -> None:
         own = ["-w", "-include", str(output / f"{name}_names.h"), *(f"-I{folder}" for folder in folders)]
         own += [f"-I{output}", f"-I{output}/{name}_headers"]
         sources = [(output / file, ["-Wall", "-Wextra", "-Wconversion", "-Werror"]) for file in made.generated]
-        sources += [(output / file, own) for file in made.exported_generated] + [(file, own) for file in made.exported]
+        exported = [*((output / file) for file in made.exported_generated), *made.exported]
+        first = len(objects)
+
+        def compiled(source: Path, options: Sequence[str], folder: Path = output) -> None:
+            objects.append(folder / f"{len(objects)}.o")
+            run([compiler, *flags, *options, INCLUDE, f"-I{folder}", "-c", str(source), "-o", str(objects[-1])])
+
+        for source in exported:
+            compiled(source, own)
+        table, runtime = sources_of_variables(name, output, objects[first:])
+        sources += [(table, [])] + ([(runtime, [])] if name == "pan" else [])
         for source, options in sources:
-            objects.append(output / f"{len(objects)}.o")
-            run([compiler, *flags, *options, f"-I{output}", "-c", str(source), "-o", str(objects[-1])])
+            compiled(source, options)
     main = tmp_path / "main.c"
     main.write_text("""
 #include "pan/pan.h"

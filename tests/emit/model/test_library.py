@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from epg.emit.model import emit_model, model_build
+from epg.generator.emit.model import emit_model, model_build
 from tests.models.direct import run_c_vectors, run_cpp_class
 from tests.models.exports import Export
 from tests.models.harness import (
@@ -21,6 +21,7 @@ from tests.models.harness import (
     Library,
     build,
     compile_file,
+    load,
     loaded,
     run,
     run_program,
@@ -406,7 +407,7 @@ int main(void)
     sanitize = ["-fsanitize=float-cast-overflow", "-fno-sanitize-recover=all"]
     library = build(loaded(MODELS / "pid_c"), "loop", tmp_path, options=sanitize)
     found = run_program(tmp_path, text, [library], sanitize).split()
-    assert found == ["2147483647", "-2147483648", "-2147483648", "2147483647", "-3"]
+    assert found == ["2147483647", "-2147483648", "0", "2147483647", "-4"]  # with NaN, the model is not started
 
 
 def test_a_library_called_like_the_code_it_wraps(tmp_path: Path) -> None:
@@ -539,13 +540,48 @@ def test_headers_in_another_case_are_found(tmp_path: Path) -> None:
 
 
 def test_single_precision_export(tmp_path: Path) -> None:
-    from tests.models.harness import load
-
     model, _ = load(Export(real="float", tokens=False).write(tmp_path / "model"))
     assert model is not None
     rows = values(run_wrapper(build(model, "pan", tmp_path), 100))
     double = values(run_wrapper(build(loaded(Export(tokens=False).write(tmp_path / "d")), "pan", tmp_path / "d2"), 100))
     assert rows[100] != double[100] and rows[100] == pytest.approx(double[100], rel=1e-4)
+
+
+@pytest.mark.parametrize("kind", ["c", "c++"])
+def test_single_precision_export_limits_numbers(kind: str, tmp_path: Path) -> None:
+    """1e39 is not infinity, and NaN is not a number that the model gets."""
+    model, _ = load(KINDS[kind](Export(real="float", tokens=False), tmp_path / "model"))
+    assert model is not None
+    body = """
+    run(self, 1);
+    in.{first} = -1e39;
+    {name}_step(self, &in, &out);
+    printf("%d %lu\\n", {name}_finite(self), {name}_clamped(self));
+    {name}_set_parameter(self, 0, 1e39);
+    printf("%.9g %lu\\n", {name}_get_parameter(self, 0), {name}_clamped(self));
+    run(self, 1);
+    in.{first} = not_a_number;
+    {name}_step(self, &in, &out);
+    printf("%.17g %.17g\\n", out.corr, out.out);
+    printf("%d\\n", {name}_finite(self));
+    in.{first} = 0.5;
+    {name}_step(self, &in, &out);
+    printf("%d\\n", {name}_finite(self));
+    {name}_set_parameter(self, 0, not_a_number);
+    {name}_step(self, &in, &out);
+    printf("%d\\n", {name}_finite(self));
+    run(self, 1);
+    printf("%d %lu\\n", {name}_finite(self), {name}_clamped(self));
+"""
+    body = body.replace("{first}", model.inputs[0].identifier).replace("{name}", "pan")
+    text = RUN.format(name="pan", body=body)
+    text = "#include <math.h>\nstatic const double not_a_number = (double)NAN;\n" + text
+    library = build(model, "pan", tmp_path)
+    found = [line.split() for line in run_program(tmp_path, text, [library]).splitlines()]
+    assert found[2][1] == "1" and found[3] == ["3.40282347e+38", "2"]
+    assert found[6] == found[5]  # the step with NaN was not taken
+    assert found[7:10] == [["0"], ["1"], ["0"]] and found[-1] == ["1", "4"]
+    assert found[-3:-1] == found[:2]
 
 
 def test_export_is_not_touched(tmp_path: Path) -> None:
@@ -606,5 +642,5 @@ def test_symbols_begin_with_the_name(tmp_path: Path) -> None:
         for made in library.objects:
             for line in run(["nm", "-g", "--defined-only", str(made)]).splitlines():
                 symbol = line.split()[-1]
-                assert symbol.startswith(("pan_", "_Z", "DW.ref")) or not symbol, (kind, symbol)
+                assert symbol.startswith(("pan_", "_Z", "DW.ref", "epg_variables_")) or not symbol, (kind, symbol)
                 assert not re.search("Servo|Submodel|XX", symbol) or symbol.startswith("pan_private_"), (kind, symbol)

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from epg.models.other_step import with_step
 from tests.cmake.project import ROOT
 from tests.models.exports import Export
 from tests.models.harness import build, loaded, run_wrapper
@@ -28,7 +27,7 @@ def test_an_integration_method_takes_any_step(version: str, tokens: bool, tmp_pa
         export = Export(method="RungeKutta4", version=version, step=step)
         write = export.write_tokens if tokens else export.write
         found[step] = loaded(write(tmp_path / step / "model"))
-    changed = with_step(found["0.001"], HALF)
+    changed = found["0.001"].with_step(HALF)
     assert changed is not None and changed.step == found["0.0005"].step
     results = [run_wrapper(build(model, "pan", tmp_path), STEPS) for model in (changed, *found.values())]
     assert results[0] == results[2] != results[1]
@@ -38,11 +37,11 @@ def test_an_fmu_takes_multiples_of_its_step(tmp_path: Path) -> None:
     (tmp_path / "slow").mkdir()
     folder = Export(method="RungeKutta2").write_whole_fmu(tmp_path / "fmu", "output time")
     (tmp_path / "slow/model.yaml").write_text("version: 1\nfmu: ../fmu\nstep: 3 ms\n")
-    changed = with_step(loaded(folder), Fraction(3, 1000))
+    changed = loaded(folder).with_step(Fraction(3, 1000))
     assert changed is not None
     results = [run_wrapper(build(model, "pan", tmp_path), STEPS) for model in (changed, loaded(tmp_path / "slow"))]
     assert results[0] == results[1]
-    assert with_step(loaded(folder), HALF) is None
+    assert loaded(folder).with_step(HALF) is None
 
 
 def test_other_models_have_a_fixed_step(tmp_path: Path) -> None:
@@ -50,5 +49,5 @@ def test_other_models_have_a_fixed_step(tmp_path: Path) -> None:
     of_class = loaded(Export(method="Euler").write_cpp(tmp_path / "cpp"))
     by_hand = loaded(ROOT / "tests/models/pid_c")
     for model in (discrete, of_class, by_hand):
-        assert with_step(model, model.step / 2) is None
-        assert with_step(model, model.step) is model
+        assert model.with_step(model.step / 2) is None
+        assert model.with_step(model.step) is model

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from epg.models import Model
+from epg.generator.importers import Model
 from tests.models.direct import has_entry_points, run_c_vectors, run_cpp_class, run_fmu
 from tests.models.harness import build, load, loaded, run_program, run_wrapper
 from tests.twenty_sim.direct import close, compile_export, difference
@@ -54,7 +54,7 @@ needs_exports = pytest.mark.skipif(not PATHS, reason=SKIPPED)
 def direct(model: Model, path: Path, work: Path) -> tuple[str, bool]:
     """The results of the export's own code, and True if it starts with inputs of zero."""
     counts = (len(model.inputs), len(model.outputs))
-    details = model.details
+    details = model.code
     if model.language == "c++":
         units = [code.file.path for code in details.linked.units]  # type: ignore[attr-defined]
         places = list(details.linked.include_dirs)  # type: ignore[attr-defined]

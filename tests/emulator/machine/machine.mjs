@@ -16,6 +16,7 @@ import { Pads } from './pads.mjs';
 import { PioBlock } from './pio.mjs';
 import { Pwm } from './pwm.mjs';
 import { PowerOn, Registers, Resets } from './resets.mjs';
+import { RingOscillator } from './ring_oscillator.mjs';
 import { Sio } from './sio.mjs';
 import { Timer } from './timer.mjs';
 import { Uart } from './uart.mjs';
@@ -59,6 +60,7 @@ export class Machine {
         this.withoutFlash = [false, false]; // cores that must not access flash
         this.external = new Int8Array(30).fill(-1);
         this.watchdogMemory = new WatchdogMemory();
+        this.noise = { state: 1 };
         this.symbols = new Map();
         this.faults = [];
         this.resets = [];
@@ -141,7 +143,7 @@ export class Machine {
             0x40050: this.pwm,
             0x40054: this.timer,
             0x40058: new Watchdog(this, chip, this.watchdogMemory),
-            0x40060: new Registers(chip, 'ROSC', { 0x18: 0x80001000 }),
+            0x40060: new RingOscillator(chip, this.noise),
             0x40064: new Registers(chip, 'VREG_AND_CHIP_RESET', { 0: 0x1000, 8: before === null ? 0x100 : 0 }),
             0x40034: this.uarts[0],
             0x40038: this.uarts[1],

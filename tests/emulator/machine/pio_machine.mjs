@@ -406,18 +406,6 @@ export class StateMachine {
         }
         this.osrCount = Math.min(32, this.osrCount + bits);
         switch (argument >>> 5) {
-            case 0:
-                this.block.output(false, this.outBase, this.outCount, data, this.time);
-                break;
-            case 1:
-                this.x = data;
-                break;
-            case 2:
-                this.y = data;
-                break;
-            case 4:
-                this.block.output(true, this.outBase, this.outCount, data, this.time);
-                break;
             case 5:
                 this.pc = data & 0x1f;
                 break;
@@ -429,8 +417,26 @@ export class StateMachine {
                 this.forced = data & 0xffff;
                 break;
             default:
+                this.put(argument >>> 5, this.outBase, this.outCount, data);
         }
         return true;
+    }
+
+    /** Writes to a destination that OUT and SET share. */
+    put(destination, base, count, data) {
+        switch (destination) {
+            case 0:
+            case 4:
+                this.block.output(destination === 4, base, count, data, this.time);
+                break;
+            case 1:
+                this.x = data;
+                break;
+            case 2:
+                this.y = data;
+                break;
+            default:
+        }
     }
 
     pushWord(argument) {
@@ -518,22 +524,7 @@ export class StateMachine {
     }
 
     set(argument) {
-        const data = argument & 0x1f;
-        switch (argument >>> 5) {
-            case 0:
-                this.block.output(false, this.setBase, this.setCount, data, this.time);
-                break;
-            case 1:
-                this.x = data;
-                break;
-            case 2:
-                this.y = data;
-                break;
-            case 4:
-                this.block.output(true, this.setBase, this.setCount, data, this.time);
-                break;
-            default:
-        }
+        this.put(argument >>> 5, this.setBase, this.setCount, argument & 0x1f);
     }
 }
 

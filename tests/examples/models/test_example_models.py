@@ -12,8 +12,8 @@ from closed_loop import AXES, COUNTS_PER_RADIAN, Run, run
 from write_models import EXAMPLES, model_files
 from writer import equations
 
-from epg.diagnostics import Diagnostics
-from epg.models import load_model
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.importers import load_model
 
 JIWY = EXAMPLES / "jiwy"
 START, LENGTH = 5.0, 3.0

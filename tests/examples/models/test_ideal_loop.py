@@ -8,7 +8,7 @@ import math
 import pytest
 from write_models import EXAMPLES
 
-from epg.simulate.reference import Reference, load_reference
+from epg.runs.reference import Reference, load_reference
 
 H = 1e-5
 

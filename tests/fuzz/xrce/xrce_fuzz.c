@@ -550,7 +550,8 @@ static void ask_for_copy(void)
 /** Only the honest agent: the board connects again, and a setpoint reaches the model. */
 static void recover(void)
 {
-    static const uint8_t enable = 1, half[8] = {0, 0, 0, 0, 0, 0, 0xE0, 0x3F};
+    static const uint8_t level[2] = {0, 1}, half[8] = {0, 0, 0, 0, 0, 0, 0xE0, 0x3F};
+    unsigned int running = 0;
     line.connected = true;
     line.damage = 0;
     bool works = false;
@@ -559,7 +560,11 @@ static void recover(void)
         step(STEP_MS);
         if (state() == EPG_XRCE_RUNNING && i % 10 == 0) {
             agent_sample(&agent, 0, half, sizeof half);
-            agent_sample(&agent, 2, &enable, 1);
+        }
+        /* An edge, more than a second after the connection and after the last `true`. */
+        running = state() == EPG_XRCE_RUNNING ? running + 1 : 0;
+        if (running % 150 >= 148) {
+            agent_sample(&agent, 2, &level[running % 150 - 148], 1);
         }
         works = state() == EPG_XRCE_RUNNING && fake.control.enabled && epg_control_setpoint(&fake.control, 0) == 0.5;
     }

@@ -49,12 +49,66 @@ TEST(setpoints_of_one_line_act_all_or_not_at_all)
     CHECK_EQUAL(epg_control_setpoint(&fake.control, 0), 0.0);
 }
 
+TEST(setpoints_outside_of_their_limits_are_refused_with_the_limits)
+{
+    bench_start(true);
+    fake.setpoints[0] = (epg_setpoint_t){.minimum = -1.2, .maximum = 1.2, .unit = "rad", .guard = EPG_NO_COMPONENT};
+    fake.setpoints[1] = (epg_setpoint_t){.minimum = 0.0, .maximum = 5.0, .guard = EPG_NO_COMPONENT};
+    check_answer("set_b=2 a/set=1.25\n", "error setpoint a/set must be from -1.2 to 1.2 rad\r\n");
+    check_answer("a/set=-1e9\n", "error setpoint a/set must be from -1.2 to 1.2 rad\r\n");
+    check_answer("a/set=1 set_b=5.5\n", "error setpoint set_b must be from 0 to 5\r\n");
+    CHECK_EQUAL(epg_control_setpoint(&fake.control, 0), 0.0);
+    CHECK_EQUAL(epg_control_setpoint(&fake.control, 1), 0.0);
+    check_answer("a/set=-1.2 set_b=5\n", "ok setpoint\r\n");
+    CHECK_EQUAL(epg_control_setpoint(&fake.control, 0), -1.2);
+}
+
+TEST(ports_tell_limits_and_where_an_enabling_begins)
+{
+    bench_start(false);
+    fake.setpoints[0] = (epg_setpoint_t){.minimum = -1.2, .maximum = 1.2, .unit = "rad", .guard = EPG_NO_COMPONENT};
+    fake.setpoints[1] = (epg_setpoint_t){.initial = 0.25, .fresh = true, .unit = "rad/s"};
+    bench_say("a/set=1 set_b=0.5\n");
+    const char *ports = bench_say("ports\n");
+    CHECK(has_line(ports, "port setpoint a/set unit=rad min=-1.2 max=1.2 starts=1\r\n"));
+    CHECK(has_line(ports, "port setpoint /set_b unit=rad/s starts=0.25 fresh=1\r\n"));
+    fake.setpoints[1].follows = "inputs.position";
+    CHECK(has_line(bench_say("ports\n"), "port setpoint /set_b unit=rad/s follows=inputs.position fresh=1\r\n"));
+    fake.setpoints[0].timeout_ns = 10000000; /* the value is older when it is asked for */
+    fake.setpoints[0].action = EPG_TIMEOUT_DISABLE;
+    bench_run(50);
+    CHECK(has_line(bench_say("ports\n"), "port setpoint a/set unit=rad min=-1.2 max=1.2 starts=0\r\n"));
+}
+
+TEST(a_stall_names_the_setpoint_at_its_limit)
+{
+    static const epg_kind_fault_t stall = {.fault = (epg_fault_t)256, .name = "stall"};
+    bench_start(true);
+    bench.target.faults = &stall;
+    bench.target.fault_count = 1;
+    fake.setpoints[0] = (epg_setpoint_t){.minimum = -1.2, .maximum = 1.2, .guard = 0};
+    fake.setpoints[1] = (epg_setpoint_t){.minimum = -1.2, .maximum = 1.2, .guard = FAKE_COMPONENT};
+    bench_say("a/set=1.2 set_b=1\n");
+    fake.fault = stall.fault;
+    CHECK(strstr(bench_say(""), "setpoint=") == NULL); /* the axis of the fault has another setpoint */
+    fake.fault = EPG_FAULT_NONE;
+    bench_say("enable\nset_b=-1.2\n");
+    fake.fault = stall.fault;
+    const char *told = bench_say("");
+    CHECK(strstr(told, "state enabled=0 fault=stall") != NULL);
+    CHECK(strstr(told, " setpoint=/set_b") != NULL);
+    fake.fault = EPG_FAULT_NONE;
+    bench_say("enable\n");
+    fake.fault = EPG_FAULT_OUTPUT;
+    CHECK(strstr(bench_say(""), "setpoint=") == NULL); /* another fault */
+}
+
 TEST(enabling_is_answered_with_what_came_of_it)
 {
     bench_start(false);
     check_answer("enable\n", "state enabled=1 fault=none\r\nok enable\r\n");
     CHECK(fake_status().enabled);
-    check_answer("disable and be quick\n", "state enabled=0 fault=none\r\nok disable\r\n");
+    check_answer("disable and be quick\n", "state enabled=0 fault=none by=line\r\nok disable\r\n");
     CHECK(!fake_status().enabled);
     CHECK_EQUAL(fake.actuator, 0.0);
 }
@@ -70,15 +124,15 @@ TEST(enabling_that_is_refused_says_why)
     fake.application.fail_safe = fail_safe;
     fake.application.fail_safe_component = 1;
     fake.fail_safe = false;
-    check_answer("enable\n", "state enabled=0 fault=fail-safe component=motor\r\n"
-                             "error enable refused: fault=fail-safe component=motor\r\n");
+    check_answer("enable\n", "state enabled=0 fault=fail-safe component=motor by=fault\r\n"
+                             "error enable refused: stopped by fault fault=fail-safe component=motor\r\n");
 }
 
 TEST(faults_are_told_unasked)
 {
     bench_start(true);
     fake.output_error = NAN;
-    check_answer("", "state enabled=0 fault=not_finite\r\n");
+    check_answer("", "state enabled=0 fault=not_finite by=fault\r\n");
 }
 
 TEST(a_loop_that_does_not_run_is_no_reason_to_hang)
@@ -140,7 +194,7 @@ TEST(parameters_are_saved_only_while_outputs_are_safe)
     check_answer("save\n", "ok save values=1\r\n");
     CHECK(fake_port.store_size > 0);
     fake_port.store_refuses = true;
-    check_answer("save\n", "error save this target cannot store parameters\r\n");
+    check_answer("save\n", "error save the fake memory is worn out\r\n");
 }
 
 TEST(names_are_read_and_set_and_kept)
@@ -186,7 +240,7 @@ TEST(values_of_a_topic_have_names_of_their_own)
     bench.target.publications = values_and_others;
     bench.target.publication_count = 3;
     const char *ports = bench_say("ports\n");
-    CHECK(strstr(ports, "port setpoint joints/pan.position\r\nport setpoint joints/tilt.position\r\n"
+    CHECK(strstr(ports, "port setpoint joints/pan.position starts=0\r\nport setpoint joints/tilt.position starts=0\r\n"
                         "port publication joints/pan.position\r\nport publication joints/tilt.position\r\n") != NULL);
     CHECK(strstr(ports, "enable") == NULL && strstr(ports, "ping") == NULL);
     check_answer("joints/tilt.position=2 joints/pan.position=1\n", "ok setpoint\r\n");
@@ -358,14 +412,104 @@ TEST(who_goes_away_leaves_nothing_moving)
     bench.connected = false;
     bench_run(2);
     CHECK_EQUAL(fake.actuator, 0.0);
-    bench_say("enable\n"); /* never sent: the stream is closed */
     bench.out_length = 0;
     bench.connected = true;
     bench_run(50);
     CHECK(!fake_status().enabled);
-    CHECK(strcmp(bench.out, "ready node=bench_node epg=1.2.3 hash=0123456789abcdef\r\n") == 0);
+    CHECK(strcmp(bench.out, "ready node=bench_node epg=1.2.3 hash=0123456789abcdef by=start\r\n") == 0);
     CHECK_EQUAL(fake_status().statistics.reconnects, 1);
+    CHECK(has_line(bench_say("\x03version\n"), "ok version"));
+}
+
+TEST(commands_act_if_nobody_reads_the_output)
+{
+    bench_start(false);
+    bench.connected = false;
+    bench.out_length = 0;
+    bench_say("help\nports\ncapture duty rows=100\nwatch\nenable\nset_b=0.5\n");
+    CHECK(fake_status().enabled);
+    CHECK_EQUAL(epg_control_setpoint(&fake.control, 1), 0.5);
+    bench_say("set PID\\kp=3\nset PID\\tauD=4\ndisable\n");
+    CHECK(!fake_status().enabled);
+    CHECK_EQUAL(bench.model[0], 3.0);
+    CHECK_EQUAL(bench.model[1], 4.0);
+    bench_run(3000);
+    CHECK_EQUAL(bench.out_length, 0);
+    bench.connected = true;
+    bench_run(50);
+    CHECK(strcmp(bench.out, "ready node=bench_node epg=1.2.3 hash=0123456789abcdef by=line\r\n") == 0);
     CHECK(has_line(bench_say("version\n"), "ok version"));
+}
+
+/** Sends `first`, then opens or closes the connection at the instant at which `second` arrives. */
+static void send_around_a_change(bool opened, const char *first, const char *second)
+{
+    bench_start(true);
+    bench.connected = !opened;
+    bench_run(5);
+    bench_say(first);
+    bench.connected = opened;
+    bench_say(second);
+    bench_run(50);
+}
+
+TEST(a_change_of_the_connection_drops_no_stop)
+{
+    static const char line[] = "disable\n";
+    for (int opened = 0; opened < 2; opened++) {
+        for (size_t cut = 0; cut < sizeof line; cut++) {
+            char first[sizeof line] = "";
+            memcpy(first, line, cut);
+            send_around_a_change(opened != 0, first, line + cut);
+            CHECK(!fake_status().enabled);
+        }
+        send_around_a_change(opened != 0, "capture duty rows=100\nset_b=", line);
+        CHECK(!fake_status().enabled);
+        send_around_a_change(opened != 0, "\x80\x01", "\tdisable it\n");
+        CHECK(!fake_status().enabled);
+        send_around_a_change(opened != 0, "", "version\nports\nversion\nhelp\ndisable\n");
+        CHECK(!fake_status().enabled);
+        send_around_a_change(opened != 0, "version\nset_b=0.2", "5\n");
+        CHECK(fake_status().enabled);
+        CHECK_EQUAL(epg_control_setpoint(&fake.control, 1), 0.25);
+    }
+}
+
+TEST(a_stop_behind_an_answer_that_nobody_reads_acts_at_once)
+{
+    bench_start(true);
+    bench.room = 0; /* the terminal is open, and stands still */
+    bench.in = "help\nports\nversion\ndisable\n";
+    bench.in_length = strlen(bench.in);
+    bench_run(2);
+    CHECK(!fake_status().enabled);
+}
+
+static void send_alone(const char *line)
+{
+    bench.in = line;
+    bench.in_length = strlen(line);
+    bench_run(1);
+    CHECK(bench.in_length == 0);
+}
+
+TEST(a_line_that_waits_for_an_answer_does_not_act_after_a_stop)
+{
+    static const char *const lines[] = {"enable\n", "a/set=4\n"};
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        bench_start(false);
+        bench.frozen = true;
+        send_alone("set p2=1\n"); /* no cycle runs, so its answer does not come, */
+        send_alone(lines[i]);     /* and the next line waits for it */
+        send_alone("disable\n");
+        bench.frozen = false;
+        bench_run(50);
+        CHECK(!fake_status().enabled);
+        CHECK_EQUAL(epg_control_setpoint(&fake.control, 0), 0.0);
+        CHECK(strstr(bench.out, "refused: stopped by ") != NULL);
+        bench_say("enable\n");
+        CHECK(fake_status().enabled);
+    }
 }
 
 TEST(lines_that_are_none)
@@ -452,7 +596,7 @@ TEST(commands_act_though_nobody_reads)
     bench.in_length = strlen(bench.in);
     bench_run(5000);
     CHECK(!fake_status().enabled);
-    CHECK_EQUAL(epg_control_setpoint(&fake.control, 0), 4.0);
+    CHECK_EQUAL(epg_control_setpoint(&fake.control, 0), 0.0); /* the stop has overtaken it */
     bench.room = SIZE_MAX;
     bench_say("watch off\n");
     bench_run(50);
@@ -492,10 +636,11 @@ TEST(stats_of_a_node_are_shown_too)
 TEST(ports_and_help_name_everything)
 {
     bench_start(true);
-    check_answer("ports\n", "port setpoint a/set\r\nport setpoint /set_b\r\nport publication /angle\r\n"
-                            "port signal inputs.position unit=rad\r\nport signal inputs.same\r\n"
-                            "port signal outputs.same\r\nport signal outputs.duty\r\nport actuator motor\r\n"
-                            "port encoder encoder unit=rad\r\nok ports\r\n");
+    check_answer("ports\n",
+                 "port setpoint a/set starts=0\r\nport setpoint /set_b starts=0\r\nport publication /angle\r\n"
+                 "port signal inputs.position unit=rad\r\nport signal inputs.same\r\n"
+                 "port signal outputs.same\r\nport signal outputs.duty\r\nport actuator motor\r\n"
+                 "port encoder encoder unit=rad\r\nok ports\r\n");
     const char *help = bench_say("help\n");
     CHECK(has_line(help, "help jog <actuator> <duty> <ms>"));
     CHECK(has_line(help, "ok help"));
@@ -558,18 +703,4 @@ TEST(any_bytes_at_all)
     CHECK(has_line(bench_say("\x03version\n"), "ok version"));
 }
 
-RUN(ENTRY(it_greets), ENTRY(setpoints_of_one_line_act_in_one_cycle), ENTRY(setpoints_of_one_line_act_all_or_not_at_all),
-    ENTRY(enabling_is_answered_with_what_came_of_it), ENTRY(enabling_that_is_refused_says_why),
-    ENTRY(faults_are_told_unasked), ENTRY(a_loop_that_does_not_run_is_no_reason_to_hang),
-    ENTRY(parameters_are_read_and_changed_by_name), ENTRY(parameters_change_all_or_not_at_all),
-    ENTRY(parameters_are_saved_only_while_outputs_are_safe), ENTRY(names_are_read_and_set_and_kept),
-    ENTRY(names_cannot_be_set_without_a_store), ENTRY(values_of_a_topic_have_names_of_their_own),
-    ENTRY(watch_shows_values_of_one_cycle_at_the_communication_period),
-    ENTRY(watch_without_ports_shows_what_is_published), ENTRY(watch_is_silent_while_the_model_rests),
-    ENTRY(a_capture_is_told_and_read), ENTRY(a_capture_waits_for_its_trigger),
-    ENTRY(a_capture_that_makes_no_sense_is_refused), ENTRY(jog_tells_what_the_encoders_counted),
-    ENTRY(jog_refuses_what_is_not_safe), ENTRY(who_goes_away_leaves_nothing_moving), ENTRY(lines_that_are_none),
-    ENTRY(typing_is_shown_and_corrected), ENTRY(answers_of_several_lines_come_whole_through_a_narrow_stream),
-    ENTRY(what_must_act_at_once_does_not_wait_for_an_answer), ENTRY(commands_act_though_nobody_reads),
-    ENTRY(stats_are_those_of_the_loop), ENTRY(stats_of_a_node_are_shown_too), ENTRY(ports_and_help_name_everything),
-    ENTRY(a_target_without_any_of_it), ENTRY(any_bytes_at_all))
+RUN()

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -12,10 +11,11 @@ from pathlib import Path
 
 import pytest
 
+from tests.cmake.built import SANITIZERS, cmake_and_ninja
+from tests.emulator.toolchain import skip_if_missing
 from tests.xrce_agent import Agent, UdpLink
 
 HERE = Path(__file__).resolve().parent
-SANITIZERS = "-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all"
 WARNINGS = "-Wall -Wextra -Wconversion -Wdouble-promotion -Werror"
 
 
@@ -24,9 +24,7 @@ def configure(folder: Path, *settings: str) -> subprocess.CompletedProcess[str]:
         pytest.skip(
             "MICRO_ROS_PATH does not name a libmicroros for this computer: docs/micro-ros.md says how to build one"
         )
-    for tool, package in (("cmake", "cmake"), ("ninja", "ninja-build")):
-        if not shutil.which(tool):
-            pytest.skip(f"{tool} is missing: apt install {package}")
+    skip_if_missing(cmake_and_ninja)
     flags = f"-DCMAKE_C_FLAGS={SANITIZERS} {WARNINGS}"
     python = f"-DPython3_EXECUTABLE={sys.executable}"
     command = ["cmake", "-S", str(HERE / "robot"), "-B", str(folder), "-G", "Ninja", flags, python, *settings]

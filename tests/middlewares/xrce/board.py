@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import time
 from pathlib import Path
@@ -12,6 +13,11 @@ from tests.xrce_agent import Agent, Diagnostics, UdpLink, float64, read_diagnost
 
 PATIENCE = 20.0
 """Longest time to wait, in seconds, on a machine that also runs other programs."""
+
+
+def without_connection(errors: str) -> str:
+    """``errors`` of a program without the lines that tell of a lost agent."""
+    return re.sub(r"^\w+: (lost|connected to) the agent at .*\n", "", errors, flags=re.MULTILINE)
 
 
 class Board:
@@ -33,11 +39,14 @@ class Board:
         self.process.communicate()
 
     def stop(self) -> str:
-        """Ends the program normally; returns its output, which is empty unless a sanitizer reports an error."""
+        """Ends the program normally; returns its output, which is empty unless a sanitizer reports an error.
+
+        The lines that tell of a lost agent are left out.
+        """
         self.process.terminate()
         output, errors = self.process.communicate(timeout=PATIENCE)
         assert self.process.returncode == 130, errors
-        return output + errors
+        return output + without_connection(errors)
 
     def kill(self) -> None:
         self.process.kill()
@@ -53,6 +62,10 @@ class Board:
         samples = self.topics.samples(f"rt/lab/{topic}", since, self.node)
         return [(sample.time, read_float64(sample.data)) for sample in samples]
 
+    def began(self, since: float = 0.0) -> float:
+        """The time at the agent of the model's cycle 0.  Of the samples since then, the soonest one counts."""
+        return min(when - cycles / 1000 for when, cycles in self.timed("cycles_too", since))
+
     def next(self, topic: str, seconds: float = PATIENCE) -> float:
         return read_float64(self.topics.wait_for_sample(f"rt/lab/{topic}", seconds, self.node).data)
 
@@ -67,6 +80,13 @@ class Board:
         return self.topics.publish(f"rt/lab/{topic}", float64(value), reliable)
 
     def enable(self, on: bool) -> None:
+        """Disables the board, and then enables it if ``on``: a message ``true`` acts only after a ``false``.
+
+        A ``false`` of the first second after a connection only stops, because it can be an old one of the agent.
+        """
+        if on:
+            time.sleep(1.1)
+            self.topics.publish(f"rt{self.node}/enable", bytes([False]))
         self.topics.publish(f"rt{self.node}/enable", bytes([on]))
 
     def running(self, seconds: float = PATIENCE) -> float:

@@ -3,39 +3,23 @@
 
 from __future__ import annotations
 
-import shutil
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import Missing
+from tests.cmake.built import SANITIZERS, built
+from tests.emulator.toolchain import skip_if_missing
 from tests.xrce_agent import Agent, UdpLink
 from tests.xrce_agent.bare import libraries
 
 HERE = Path(__file__).resolve().parent
-SANITIZERS = "-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all"
 
 
 def build(project: str, folder: Path, flags: str, *settings: str) -> Path:
     """Builds a project; returns the folder with the executables."""
-    try:
-        libraries()
-    except Missing as missing:
-        pytest.skip(str(missing))
-    for tool, package in (("cmake", "cmake"), ("ninja", "ninja-build")):
-        if not shutil.which(tool):
-            pytest.skip(f"{tool} is missing: apt install {package}")
-    options = [f"-DPython3_EXECUTABLE={sys.executable}", f"-DCMAKE_C_FLAGS={flags}", *settings]
-    for command in (
-        ["cmake", "-S", str(HERE / project), "-B", str(folder), "-G", "Ninja", *options],
-        ["cmake", "--build", str(folder)],
-    ):
-        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
-        assert done.returncode == 0, done.stdout + done.stderr
-    return folder
+    skip_if_missing(libraries)
+    return built(HERE / project, folder, f"-DCMAKE_C_FLAGS={flags}", *settings)
 
 
 @pytest.fixture(scope="session")

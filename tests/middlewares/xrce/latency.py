@@ -9,15 +9,17 @@ import subprocess
 import time
 from pathlib import Path
 
+from tests.live.target import read_trace
 from tests.xrce_agent import Agent, UdpLink, float64
 from tests.xrce_agent.latency import TOPIC, Step, duty, parse
 
 
 def measure(program: Path, count: int, folder: Path, seed: int = 1) -> list[Step]:
     """Sends ``count`` steps, 3 to 7 ms apart, at any phase of the control cycle; returns those that arrived."""
-    file, draw = folder / f"{program.name}.txt", random.Random(seed)
+    file, trace, draw = folder / f"{program.name}.txt", folder / f"{program.name}.csv", random.Random(seed)
     with Agent(UdpLink()) as agent:
         command = [str(program), "--realtime", "--quiet", "--agent", agent.address]
+        command += ["--trace", str(trace), "--duration", "3600"]
         process = subprocess.Popen(command, env={**os.environ, "LATENCY_FILE": str(file)}, stdout=subprocess.DEVNULL)
         try:
             agent.topics.wait_for_reader(TOPIC)
@@ -33,4 +35,4 @@ def measure(program: Path, count: int, folder: Path, seed: int = 1) -> list[Step
             process.terminate()
             status = process.wait(timeout=10)
     assert status == 130
-    return parse(file, sent)
+    return parse(file, sent, read_trace(trace))

@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 import statistics
-import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from tests.waiting import until
 from tests.xrce_agent import Agent
 
-from .board import PATIENCE, Board
+from .board import Board
 
 
 @dataclass
@@ -34,11 +34,12 @@ def reconnect(robot: Path, agent: Agent, count: int) -> Account:
             agent.restart()
             account.latency.append(board.running())
             value = turn / 1024
-            end = time.monotonic() + PATIENCE
-            while board.values("got_reliable")[-1:] != [value]:
-                assert time.monotonic() < end, f"no setpoint arrives in turn {turn}:\n{agent.tail()}"
+
+            def arrived(value: float = value) -> bool:
                 board.set("reliable", value)
-                time.sleep(0.005)
+                return board.values("got_reliable")[-1:] == [value]
+
+            until(arrived, lambda turn=turn: f"no setpoint arrives in turn {turn}:\n{agent.tail()}", pause=0.005)
             account.memory.append(board.memory())
             account.descriptors.append(board.descriptors())
         agent.wait_until(lambda: board.statistic("reconnects") == count)

@@ -41,13 +41,14 @@ def test_the_agent_is_restarted(robot: Path, agent: Agent, pause: float) -> None
     with Board(robot, agent) as board:
         board.running()
         check_alive(board, 0.5)
-        before_time, before = board.timed("cycles")[-1]
+        before = board.began()
         agent.restart(pause)
+        restarted = time.monotonic()
         assert board.running() < 3.0
-        after_time, after = board.timed("cycles_too")[-1]
-        assert after - before == pytest.approx((after_time - before_time) * 1000, abs=60)
         assert board.next("got_reliable") == 0.5  # the board has kept its setpoint
         check_alive(board, 0.75)
+        lost = 1000 * (board.began(restarted) - before)
+        assert -60 <= lost <= 60 + board.statistic("missed"), "a cycle is lost only if the computer is late"
         diagnostics = board.diagnostics()
         assert diagnostics.values["reconnects"] == "1"
         assert (diagnostics.state, diagnostics.values["faults"]) == ("enabled", "0")
@@ -58,8 +59,8 @@ def test_the_first_samples_after_a_reconnection_are_new(robot: Path, agent: Agen
     """After a reconnection, no old value is sent: neither values of the board nor setpoints."""
     with Board(robot, agent) as board:
         board.running()
+        began = board.began()
         for _ in range(5):
-            time_before, cycles_before = board.timed("cycles_too")[-1]
             agent.kill()
             time.sleep(0.5)
             agent.topics.publish("rt/lab/reliable", bytes(8))  # no agent is there that could keep it
@@ -67,19 +68,22 @@ def test_the_first_samples_after_a_reconnection_are_new(robot: Path, agent: Agen
             agent.start()
             board.running()
             board.next("cycles")
+            missed = board.statistic("missed")
             for topic in ("cycles", "cycles_too"):
                 when, cycles = board.timed(topic, restarted)[0]
-                assert cycles - cycles_before == pytest.approx((when - time_before) * 1000, abs=40)
+                assert 1000 * (restarted - began) - missed - 40 <= cycles <= 1000 * (when - began) + 40
         assert board.next("got_reliable") == 0.25
         assert board.stop() == ""
 
 
-def test_a_short_freeze_loses_nothing(robot: Path, agent: Agent) -> None:
+@pytest.mark.parametrize("seconds", [0.4, 3.0])
+def test_a_short_freeze_ends_no_session(robot: Path, agent: Agent, seconds: float) -> None:
+    """An agent is busy for seconds when other boards leave."""
     with Board(robot, agent) as board:
         board.running()
         began = time.monotonic()
         agent.freeze()
-        time.sleep(0.4)
+        time.sleep(seconds)
         agent.thaw()
         board.running()
         time.sleep(0.3)
@@ -95,7 +99,7 @@ def test_a_frozen_agent_is_given_up_and_found_again(robot: Path, agent: Agent) -
         board.running()
         check_alive(board, 0.5)
         agent.freeze()
-        time.sleep(2.5)
+        time.sleep(5.0)
         thawed = time.monotonic()
         agent.thaw()
         agent.wait_until(lambda: bool(agent.created) and agent.created[-1][0] > thawed)
@@ -122,7 +126,7 @@ def test_a_line_without_an_agent_on_it(robot: Path, tmp_path: Path) -> None:
     with Agent(PtyLink(tmp_path / "line")) as agent, Board(robot, agent) as board:
         board.running()
         agent.freeze()
-        time.sleep(2.0)  # time in which the terminal's buffer fills
+        time.sleep(5.0)  # time in which the terminal's buffer fills, and the board gives up
         agent.thaw()
         agent.wait_until(lambda: len(agent.created) >= 2)
         check_alive(board, 0.5)

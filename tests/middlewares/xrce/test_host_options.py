@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import shutil
 import struct
 import subprocess
+import time
 from pathlib import Path
 
 import pytest
@@ -35,6 +37,8 @@ def run(program: Path, *options: str) -> tuple[int, str]:
             "error: the agent's host 'no.such.host.invalid' was not found",
         ),
         (["--realtime", "--console", "--duration", "1"], 2, "error: this target has no console\n"),
+        (["--replay", "missing.csv"], 2, "missing.csv: error: "),
+        (["--replay", "missing.csv", "--realtime"], 2, "error: --replay with another option than"),
     ],
 )
 def test_mistakes(robot: Path, options: list[str], status: int, message: str) -> None:
@@ -64,6 +68,78 @@ def test_it_says_whether_there_is_an_agent(robot: Path, agent: Agent) -> None:
         finally:
             process.terminate()
         assert process.wait(PATIENCE) == 130
+
+
+def start(program: Path, agent: Agent, *options: str) -> subprocess.Popen[str]:
+    command = [str(program), "--realtime", "--agent", agent.address, *options]
+    return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+
+
+def test_two_programs_with_one_name_have_two_sessions(robot: Path, agent: Agent, tmp_path: Path) -> None:
+    """Their keys differ by the programs' files, and stay the same after a restart."""
+    other = tmp_path / "robot_host"
+    shutil.copy(robot, other)
+    programs = [start(robot, agent), start(other, agent)]
+    try:
+        agent.wait_until(lambda: len(agent.clients) == 2, PATIENCE)
+        time.sleep(3.0)
+        assert len(agent.created) == 2
+        programs[1].kill()
+        programs[1].wait()
+        programs.append(start(other, agent))
+        agent.wait_until(lambda: len(agent.created) == 3, PATIENCE)
+        assert len({key for _, key in agent.created}) == 2
+    finally:
+        for process in programs:
+            process.kill()
+            process.communicate()
+
+
+def test_a_second_copy_of_a_program_is_refused(robot: Path, agent: Agent) -> None:
+    first = start(robot, agent)
+    try:
+        agent.wait_until(lambda: len(agent.clients) == 1, PATIENCE)
+        status, errors = run(robot, "--realtime", "--duration", "5", "--agent", agent.address)
+        assert (status, errors) == (
+            1,
+            f"error: this program already runs, as the node /lab/robot_host of the agent at {agent.address}\n"
+            "hint: a second copy needs another name, for example --ros-args -r __ns:=/robot_2\n",
+        )
+        status, errors = run(
+            robot, "--realtime", "--duration", "1", "--agent", agent.address, "--ros-args", "-r", "__ns:=/robot_2"
+        )
+        assert status == 0 and "error" not in errors
+        assert len(agent.created) == 2
+    finally:
+        first.kill()
+        first.communicate()
+    status, errors = run(robot, "--realtime", "--duration", "1", "--agent", agent.address)
+    assert status == 0 and "error" not in errors
+
+
+def test_without_options_it_is_a_node(robot: Path, agent: Agent, tmp_path: Path) -> None:
+    """`ros2 run PACKAGE robot_host` gives no options.  With files, the run is a simulation and needs its duration."""
+    command = [str(robot), "--agent", agent.address]
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        try:
+            assert process.stderr.readline() == f"robot: connected to the agent at {agent.address}\n"
+        finally:
+            process.terminate()
+        assert process.wait(PATIENCE) == 130
+    status, errors = run(robot, "--trace", str(tmp_path / "trace.csv"))
+    assert status == 2 and errors.startswith("error: --duration is missing\n")
+
+
+def test_a_namespace_of_two_parts(robot: Path, agent: Agent) -> None:
+    command = ["--realtime", "--duration", "1", "--agent", agent.address, "--ros-args", "-r"]
+    status, errors = run(robot, *command, "__ns:=/fleet/robot_7")
+    assert status == 0 and errors.startswith(
+        "robot: 'ros2 node info' does not find this node: an agent takes '/fleet' for its namespace and "
+        "'robot_7/robot_host' for its name; topics, services and parameters work\n"
+    )
+    status, errors = run(robot, *command, "__ns:=/fleet")
+    assert status == 0 and "ros2 node info" not in errors
 
 
 def test_simulated_time_at_a_pace_is_on_clock(robot: Path, agent: Agent) -> None:

@@ -17,6 +17,8 @@ from .latency import measure
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="real time on the host needs Linux")
 STEPS = 150
+RESOLUTION = 5e-6
+"""Seconds: the program records the begin of a cycle by two readings of the clock."""
 
 
 @pytest.fixture(scope="module")
@@ -34,8 +36,7 @@ def test_the_next_cycle(folder: Path, delay: int) -> None:
     assert len(steps) > 0.8 * STEPS, "best effort, and of two that came within a cycle the newer acts"
     assert {step.cycles for step in steps} <= {0, 1}
     soonest = 1e-6 * delay
-    early = [step for step in steps if step.whole < soonest]
-    assert len(early) < len(steps) // 10, "a cycle that the computer starts late has less than the whole delay left"
+    assert all(step.after_tick > soonest - RESOLUTION for step in steps), "a cycle that starts late waits less"
     on_time = [step for step in steps if step.after_arrival <= PERIOD + soonest + 0.0005]
     assert len(on_time) > len(steps) // 2, "the rest: what else the machine did"
     waited = sorted(step.in_cycle for step in steps)[len(steps) // 2]

@@ -8,7 +8,7 @@ import signal
 import subprocess
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import pytest
@@ -32,6 +32,11 @@ def _agent_program() -> None:
         program()
     except Missing as missing:
         pytest.skip(str(missing))
+
+
+def lost_and_connected(agent: str | Path) -> str:
+    """The lines that a board prints when its agent is restarted, also with --quiet."""
+    return f"robot: lost the agent at {agent}\nrobot: connected to the agent at {agent}\n"
 
 
 @contextmanager
@@ -79,7 +84,7 @@ def test_a_peer_sees_a_node_with_its_topics(robot: Path, tmp_path: Path) -> None
             assert hopeless.messages == [] and hopeless.refused_for == "RELIABILITY"
             assert peer.spin_until(lambda: len(diagnostics.messages) > 2)
             status = diagnostics.messages[-1].status[0]
-            assert status.name == "robot_9" and status.message.split(";")[0] == "enabled"
+            assert status.name == "lab/robot_9" and status.message.split(";")[0] == "enabled"
             assert status.level == (0 if status.message == "enabled" else 1)  # a busy computer has overruns
             stamp = diagnostics.messages[-1].header.stamp
             assert abs(stamp.sec + stamp.nanosec / 1e9 - time.time()) < 1.0
@@ -132,7 +137,7 @@ def test_it_is_killed_and_started_again(robot: Path, tmp_path: Path) -> None:
 
             assert peer.spin_until(counted)
             assert values["faults"] == "0"
-            assert stop(process) == ""
+            assert stop(process) == 5 * lost_and_connected(agent.address)
 
 
 def test_it_is_stopped_for_a_while(robot: Path, tmp_path: Path) -> None:
@@ -161,6 +166,41 @@ def test_the_board_is_restarted(robot: Path, tmp_path: Path, way: str) -> None:
                     assert stop(process) == ""
 
 
+@pytest.mark.parametrize("way", [signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.parametrize(("count", "leave"), [(3, 1), (6, 1), (6, 3)])
+def test_boards_leave(robot: Path, tmp_path: Path, count: int, leave: int, way: signal.Signals) -> None:
+    """The agent deletes their readers under the lock of all clients.  The others wait, and none loses its session."""
+    with on_loopback(), RealAgent.udp(tmp_path) as agent, Peer(agent.domain, "peer") as peer, ExitStack() as boards:
+        diagnostics = peer.subscription("/diagnostics", DiagnosticArray_, depth=10 * count)
+
+        def heard(since: float) -> dict[str, list[tuple[float, str]]]:
+            """For each board, the times of its messages and its number of reconnections."""
+            found: dict[str, list[tuple[float, str]]] = {}
+            for when, message in diagnostics.received:
+                values = {pair.key: pair.value for pair in message.status[0].values}
+                if when > since:
+                    found.setdefault(message.status[0].name, []).append((when, values["reconnects"]))
+            return found
+
+        processes = [
+            boards.enter_context(board(robot, "--serial", str(number), "--agent", agent.address))
+            for number in range(count)
+        ]
+        assert peer.spin_until(lambda: len(heard(0.0)) == count, 40.0)
+        peer.spin(2.0)
+        began = time.monotonic()
+        for process in processes[:leave]:
+            process.send_signal(way)
+        peer.spin(9.0)
+        messages = {name: each for name, each in heard(began).items() if int(name.removeprefix("lab/robot_")) >= leave}
+        assert len(messages) == count - leave
+        times = [[began, *(when for when, _ in each), time.monotonic()] for each in messages.values()]
+        silent = max(after - before for each in times for before, after in itertools.pairwise(each))
+        print(f"{leave} of {count} boards, {way.name}: the others were silent for {silent:.2f} s")
+        assert {reconnects for each in messages.values() for _, reconnects in each} == {"0"}
+        assert silent < 4.0
+
+
 def test_on_a_serial_line(robot: Path, tmp_path: Path) -> None:
     with on_loopback(), Cable() as cable:
         agent = RealAgent(["serial", "-b", "115200", "-D", cable.ends[0]], free_domain(), tmp_path)
@@ -172,4 +212,4 @@ def test_on_a_serial_line(robot: Path, tmp_path: Path) -> None:
                     check_alive(peer, commands, answers, 1.0 + turn / 8)
                     agent.restart()
                 check_alive(peer, commands, answers, 0.5)
-                assert stop(process) == ""
+                assert stop(process) == 3 * lost_and_connected(cable.ends[1])

@@ -69,11 +69,11 @@ def test_many_requests_at_once_are_all_answered(robot: Path, agent: Agent) -> No
             asked.append(agent.topics.ask(ENABLE, ON if number % 2 else OFF))
             if number % 10 == 9:  # the agent keeps one request that it cannot send
                 agent.wait_until(lambda: all(agent.topics.answers(ENABLE, each) for each in asked))
-        answers = [agent.topics.answers(ENABLE, each) for each in asked]
-        assert [[result(each) for each in replies] for replies in answers] == [
-            [(True, "disabled")],
-            [(True, "enabled")],
-        ] * 20
+        answers = [[result(each) for each in agent.topics.answers(ENABLE, number)] for number in asked]
+        assert answers[::2] == [[(True, "disabled")]] * 20
+        for answer in answers[1::2]:  # a request to disable overtakes one to enable that waits
+            assert answer in ([(True, "enabled")], [(False, "refused, stopped by service")])
+        assert answers[-1] == [(True, "enabled")]
         assert board.stop() == ""
 
 
@@ -116,6 +116,43 @@ def test_requests_do_not_stop_setpoints(robot: Path, agent: Agent) -> None:
         agent.mute_streams.clear()
         agent.wait_until(lambda: all(agent.topics.answers(ENABLE, each) for each in asked))
         assert board.statistic("reconnects") == 0
+        assert board.stop() == ""
+
+
+def test_a_request_to_disable_does_not_wait_for_replies(robot: Path, agent: Agent) -> None:
+    """The answers to requests are lost, so requests wait: the one to disable acts, and the one before it never does."""
+    with Board(robot, agent) as board:
+        serving(board)
+        assert result(agent.topics.call(ENABLE, ON)) == (True, "enabled")
+        agent.mute_streams.add(SERVICE_STREAM)
+        agent.topics.ask(RESET, EMPTY)
+        asked = [agent.topics.ask(ENABLE, state) for state in (ON, OFF)]
+        agent.wait_until(lambda: board.diagnostics().message == "disabled")
+        agent.mute_streams.clear()
+        agent.wait_until(lambda: all(agent.topics.answers(ENABLE, each) for each in asked))
+        answers = [result(answer) for each in asked for answer in agent.topics.answers(ENABLE, each)]
+        assert answers == [(False, "refused, stopped by service"), (True, "disabled")]
+        assert result(agent.topics.call(ENABLE, ON)) == (True, "enabled")
+        assert board.stop() == ""
+
+
+def test_a_request_to_enable_that_waits_does_not_act_after_a_stop(robot: Path, agent: Agent) -> None:
+    """The stop comes by the topic, while the request waits for the reply to another one."""
+    with Board(robot, agent) as board:
+        serving(board)
+        assert result(agent.topics.call(ENABLE, ON)) == (True, "enabled")
+        agent.mute_streams.add(SERVICE_STREAM)
+        agent.topics.ask(RESET, EMPTY)
+        asked = agent.topics.ask(ENABLE, ON)
+        time.sleep(0.2)
+        agent.topics.publish(f"rt{ENABLE}", OFF)
+        agent.wait_until(lambda: board.diagnostics().message == "disabled")
+        time.sleep(0.2)
+        agent.mute_streams.clear()
+        agent.wait_until(lambda: bool(agent.topics.answers(ENABLE, asked)))
+        assert [result(each) for each in agent.topics.answers(ENABLE, asked)] == [(False, "refused, stopped by topic")]
+        assert board.diagnostics().message == "disabled"
+        assert result(agent.topics.call(ENABLE, ON)) == (True, "enabled")
         assert board.stop() == ""
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The use of topics: periods, newest values, timeouts of setpoints, enabling, diagnostics, stamps."""
+"""The use of topics: periods, newest values, timeouts of setpoints, enabling, diagnostics."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from epg.live.client import Client, Refused
-from epg.live.port import Port
+from epg.live.client import Client, CommandRefused
+from epg.live.port import SerialPort
 from tests.xrce_agent import Agent
 
 from .board import Board
-from .checks import check_newest_setpoints, check_period, check_stamps, check_wrong_setpoints
+from .checks import check_newest_setpoints, check_period, check_wrong_setpoints
 
 
 def test_a_period_is_20_ms_and_of_one_control_cycle(robot: Path, agent: Agent) -> None:
@@ -130,10 +130,10 @@ def test_a_robot_that_ros_has_enabled_stays_so_beside_a_program(
         for on, state in ((False, "disabled"), (True, "enabled")):
             board.enable(on)
             agent.wait_until(lambda state=state: board.diagnostics().state == state)
-        with Port(port) as opened:
+        with SerialPort(port) as opened:
             client = Client(opened)
-            with pytest.raises(Refused, match="enabled already, without a lease"):
-                client.command("enable leased")
+            with pytest.raises(CommandRefused, match="enabled already, without a lease"):
+                client.enable()
             client.stop()
         time.sleep(1)
         assert board.diagnostics().state == "enabled"
@@ -157,7 +157,7 @@ def test_diagnostics(robot: Path, agent: Agent) -> None:
     with Board(robot, agent, serial="C") as board:
         board.running()
         diagnostics = board.diagnostics()
-        assert (diagnostics.name, diagnostics.hardware) == ("robot_C", "C")
+        assert (diagnostics.name, diagnostics.hardware) == ("lab/robot_C", "C")
         numbers = {name: int(text) for name, text in diagnostics.values.items() if text.isdigit()}
         assert numbers.keys() >= {"cycles", "overruns", "missed", "lateness_max_ns", "computation_max_ns", "reconnects"}
         assert 0 < numbers["computation_min_ns"] <= numbers["computation_max_ns"]
@@ -170,14 +170,6 @@ def test_diagnostics(robot: Path, agent: Agent) -> None:
         assert board.stop() == ""
 
 
-def test_stamps_are_of_the_agents_clock(robot: Path, agent: Agent) -> None:
-    agent.clock_offset = 1000.0
-    with Board(robot, agent) as board:
-        board.running()
-        check_stamps(board, 1000.0, earliest=-0.1, latest=0.01)
-        assert board.stop() == ""
-
-
 def test_a_line_that_is_too_slow_drops_old_values(robot: Path, agent: Agent) -> None:
     """No frame is acknowledged for half a second: later messages have new values, and the loop has continued."""
     with Board(robot, agent) as board:
@@ -187,8 +179,6 @@ def test_a_line_that_is_too_slow_drops_old_values(robot: Path, agent: Agent) -> 
         agent.from_board.loss = 0.0
         time.sleep(1.0)
         assert len(agent.created) == 1
-        when, cycles = board.timed("cycles")[-1]
-        when_too, cycles_too = board.timed("cycles_too")[-1]
-        assert cycles - cycles_too == pytest.approx((when - when_too) * 1000, abs=25)
+        agent.wait_until(lambda: board.values("cycles")[-1] in board.values("cycles_too")[-2:], 2.0)
         assert board.statistic("unsent") > 5
         assert board.stop() == ""

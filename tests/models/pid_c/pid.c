@@ -1,6 +1,6 @@
 #include "pid.h"
 
-int shared = 7; /* a global, to meet that of another model */
+const int shared = 7; /* a global, to meet that of another model */
 
 static double limited(double value, double limit)
 {

@@ -16,7 +16,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from epg.bootstrap import cache_folder
+from epg.generator.bootstrap import cache_folder
 from tests.emulator.toolchain import ROOT, Missing, locked
 
 HERE = Path(__file__).resolve().parent
@@ -42,7 +42,7 @@ class Processor:
                 "riscv": "gcc-riscv64-unknown-elf picolibc-riscv64-unknown-elf",
                 "": "gcc",
             }
-            raise Missing(f"{self.prefix}{name} is not installed: apt install {packages[self.toolchain]}")
+            raise Missing(f"{self.prefix}{name} is not installed: sudo apt install {packages[self.toolchain]}")
         return path
 
 
@@ -51,6 +51,7 @@ PROCESSORS = {
     "m0plus": Processor("arm", ("-mcpu=cortex-m0plus",)),
     "m3": Processor("arm", ("-mcpu=cortex-m3",)),
     "m4f": Processor("arm", ("-mcpu=cortex-m4", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard")),
+    "m33": Processor("arm", ("-mcpu=cortex-m33", "-mfpu=fpv5-sp-d16", "-mfloat-abi=hard")),
     "m7": Processor("arm", ("-mcpu=cortex-m7", "-mfpu=fpv5-d16", "-mfloat-abi=hard")),
     "rv32imac": Processor("riscv", ("-march=rv32imac", "-mabi=ilp32")),
 }
@@ -60,7 +61,7 @@ def build(processor: Processor, project: Path, **variables: str) -> Path:
     """Configures and builds a project for a processor; returns the build folder.  Raises :class:`Missing`."""
     processor.tool("gcc")
     if shutil.which("ninja") is None:
-        raise Missing("Ninja is not installed: apt install ninja-build")
+        raise Missing("Ninja is not installed: sudo apt install ninja-build")
     settings = {"CMAKE_BUILD_TYPE": "Release", "Python3_EXECUTABLE": sys.executable, **variables}
     if processor.toolchain:
         settings["CMAKE_TOOLCHAIN_FILE"] = str(HERE / "toolchains" / f"{processor.toolchain}.cmake")

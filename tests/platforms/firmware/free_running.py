@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
+from typing import Any, ClassVar
 
 from tests.middlewares.client import Lines
 
@@ -34,15 +35,18 @@ class State:
 class FreeRunning:
     """A board that runs, with a test at its lines."""
 
-    def __init__(self, machine: str, image: Path) -> None:
-        self._board = Board(machine, image, uarts=3, options=ICOUNT)
-        console, agent, test = self._board.lines
-        self.console = Lines(console.fileno(), console.fileno())
-        self.agent = agent
-        """The connection of the agent's line."""
-        self._orders = Lines(test.fileno(), test.fileno())
+    LINES: ClassVar = ("console", "agent", "orders")
+    """The use of each UART."""
+    STATE: ClassVar[type[Any]] = State
 
-    def __enter__(self) -> FreeRunning:
+    def __init__(self, machine: str, image: Path) -> None:
+        self._board = Board(machine, image, uarts=len(self.LINES), options=ICOUNT)
+        lines = dict(zip(self.LINES, self._board.lines, strict=True))
+        self.agent = lines["agent"]
+        """The connection of the agent's line."""
+        self.console, self._orders = (Lines(lines[use].fileno(), lines[use].fileno()) for use in ("console", "orders"))
+
+    def __enter__(self) -> Any:
         return self
 
     def __exit__(
@@ -50,12 +54,17 @@ class FreeRunning:
     ) -> None:
         self._board.__exit__(kind, value, trace)
 
-    def order(self, letter: str) -> State:
+    def give(self, letter: str) -> None:
+        """Gives an order that has no answer."""
+        self._orders.send(letter)
+
+    def order(self, letter: str) -> Any:
+        """The state after an order."""
         self._orders.send(letter)
         (line,) = self._orders.until("")
-        return State(*map(int, line.split()))
+        return self.STATE(*map(int, line.split()))
 
-    def let_pass(self, milliseconds: int) -> State:
+    def let_pass(self, milliseconds: int) -> Any:
         """The state after that much of the board's time, at least."""
         begin = state = self.order("?")
         while state.time_us - begin.time_us < 1000 * milliseconds:

@@ -12,10 +12,11 @@ from functools import lru_cache
 
 import pytest
 
-from epg.diagnostics import Diagnostics
-from epg.simulate.executable import read_trace, run_executable
+from epg.generator.diagnostics import Diagnostics
+from epg.runs.executable import run_executable
+from epg.runs.recording import read_table
+from epg.runs.setpoint_file import SetpointRow, setpoint_rows, write_setpoints
 from epg.simulate.load_scenario import load_scenario
-from epg.simulate.setpoints import Row, setpoint_rows, write_setpoints
 from tests.emulator.toolchain import ROOT, skip_if_missing
 
 from .builds import HERE, PROCESSORS, build
@@ -32,7 +33,7 @@ through 0 again."""
 
 
 @lru_cache
-def scenario() -> tuple[Row, ...]:
+def scenario() -> tuple[SetpointRow, ...]:
     """The rows of the example's scenario."""
     diagnostics = Diagnostics()
     loaded = load_scenario(ROOT / "examples" / "jiwy" / "tracking.yaml", diagnostics)
@@ -60,8 +61,8 @@ def host(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[float, ...]]:
     run_executable(
         program, folder, DURATION, folder / "setpoints.csv", realtime=False, progress=lambda message: None
     )  # fmt: skip
-    trace = read_trace(folder / "trace.csv", SIGNALS)
-    return list(zip(*(trace[name] for name in SIGNALS), strict=True))
+    trace = read_table(folder / "trace.csv").signals
+    return list(zip(*(trace[name].value for name in SIGNALS), strict=True))
 
 
 @pytest.mark.parametrize(("processor", "system"), [("m3", "bare"), ("m4f", "freertos"), ("m7", "bare")])

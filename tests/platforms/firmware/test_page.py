@@ -57,7 +57,7 @@ def test_the_stubs_say_which_pulls_the_pins_need(repository: Path) -> None:
 def test_a_build_by_make(repository: Path) -> None:
     """The page's Makefile with this computer's compiler, from nothing, and again after a change of the target."""
     if shutil.which("make") is None:
-        pytest.skip("make is missing: apt install make")
+        pytest.skip("make is not installed: sudo apt install make")
     command = ["make", "CC=cc", "CPU="]
     environment = os.environ | {"EPG_PATH": str(ROOT), "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
     for gain in ("value: 5", "value: 4"):

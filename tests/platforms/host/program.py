@@ -15,6 +15,8 @@ from typing import Any
 TARGETS = Path(__file__).resolve().parents[3] / "targets"
 HOST = TARGETS / "platforms" / "host"
 RUNTIME = TARGETS / "runtime"
+CONSOLE = TARGETS / "middlewares" / "console"
+SCAN = [CONSOLE / "scan.c", CONSOLE / "frame.c"]
 PROGRAMS = Path(__file__).resolve().parent / "programs"
 
 WARNINGS = ["-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Wshadow", "-pedantic", "-Werror"]
@@ -33,7 +35,7 @@ def compile_program(
     compiler = shutil.which("gcc") or shutil.which("cc")
     assert compiler is not None, "a C compiler is needed"
     defines = ["EPG_HOST_TARGET=epg_host_application", *defines]
-    includes = [RUNTIME / "include", HOST / "include", HOST / "src"]
+    includes = [RUNTIME / "include", HOST / "include", HOST / "src", CONSOLE]
     command = [compiler, "-std=c11", "-O1", "-g", *WARNINGS, *sanitize]
     command += [f"-I{folder}" for folder in includes] + [f"-D{define}" for define in defines]
     command += [str(source) for source in sources] + ["-pthread", "-lm", "-o", str(output)]
@@ -44,8 +46,10 @@ def compile_program(
 
 def platform_sources(*, main: bool = True, system: str = "linux") -> list[Path]:
     """All sources of the runtime and the host platform, as the build system would compile them."""
-    folders = (RUNTIME / "src" / "control", RUNTIME / "src" / "communication", HOST / "src", HOST / "src" / system)
-    sources = [source for folder in folders for source in sorted(folder.glob("*.c"))]
+    parts = ("control", "communication", "model")
+    folders = [RUNTIME / "src" / part for part in parts]
+    folders += [*sorted((HOST / "src").iterdir()), *sorted((HOST / "src").glob(f"*/{system}"))]
+    sources = [source for folder in folders for source in sorted(folder.glob("*.c"))] + SCAN
     return [source for source in sources if main or source.name != "main.c"]
 
 

@@ -13,7 +13,7 @@ from .program import HOST, PROGRAMS, compile_program, rows
 
 @pytest.fixture(scope="module")
 def delivery(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    parts = ("communication", "number", "port", "setpoints")
+    parts = ("files/communication", "files/files", "files/number", "files/setpoints", "port/port")
     sources = [PROGRAMS / "delivery.c", *(HOST / "src" / f"{part}.c" for part in parts)]
     return compile_program(tmp_path_factory.mktemp("delivery") / "delivery", sources)
 

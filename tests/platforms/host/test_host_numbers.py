@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The parts of the host platform: distribution of times, and numbers in files."""
+"""The parts of the host platform: distribution of times, numbers in files, and the number of a start."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ def filtered(program: Path, lines: list[str]) -> list[str]:
 
 @pytest.fixture(scope="module")
 def histogram(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    sources = [PROGRAMS / "histogram_quantiles.c", HOST / "src" / "histogram.c"]
+    sources = [PROGRAMS / "histogram_quantiles.c", HOST / "src" / "loop" / "histogram.c"]
     return compile_program(tmp_path_factory.mktemp("histogram") / "histogram", sources)
 
 
 @pytest.fixture(scope="module")
 def numbers(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    sources = [PROGRAMS / "numbers.c", HOST / "src" / "number.c"]
+    sources = [PROGRAMS / "numbers.c", HOST / "src" / "files" / "number.c"]
     return compile_program(tmp_path_factory.mktemp("numbers") / "numbers", sources)
 
 
@@ -67,3 +67,18 @@ def test_numbers_survive_a_file(numbers: Path) -> None:
             assert struct.pack(">d", float(text)) == word.to_bytes(8, "big")
     assert written[-9:-5] == ["0.1", "0.033", "0.3333333333333333", "1e+22"]
     assert written[-3:] == ["-0", "123456789", "2.5"]
+
+
+def test_the_number_of_a_start(tmp_path: Path) -> None:
+    """Another one for each run in real time; the same one for all runs in simulated time."""
+    sources = [PROGRAMS / "boot_id.c", *(HOST / "src" / "port" / name for name in ("clock.c", "monotonic.c"))]
+    program = compile_program(tmp_path / "boot_id", sources)
+
+    def number(*arguments: str) -> int:
+        done = subprocess.run([program, *arguments], capture_output=True, text=True, check=True)
+        first, again = done.stdout.split()
+        assert first == again != "0"
+        return int(first)
+
+    assert len({number() for _ in range(10)}) == 10
+    assert {number("simulated") for _ in range(3)} == {1}

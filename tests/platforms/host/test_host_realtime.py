@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import os
+import pty
 import resource
 import shutil
 import signal
@@ -16,6 +17,8 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+
+from tests.waiting import until
 
 from .program import (
     ADDRESS_SANITIZER,
@@ -52,6 +55,13 @@ def assert_consistent(run: Run, ticks: int) -> None:
     assert min(deviations) == pytest.approx(statistics["interval_deviation_min"], abs=1e-12)
     assert max(deviations) == pytest.approx(statistics["interval_deviation_max"], abs=1e-12)
     assert sum(bin_["count"] for bin_ in statistics["lateness_histogram"]) == statistics["cycles"]
+
+
+def traced(folder: Path) -> float:
+    """The time of the last row that a running program has written into its trace; 0 without one."""
+    file = folder / "trace.csv"
+    whole = file.read_text().split("\n")[1:-1] if file.is_file() else []
+    return float(whole[-1].split(",")[0]) if whole else 0.0
 
 
 def test_two_seconds_at_one_millisecond(patient_motor: Program, tmp_path: Path) -> None:
@@ -152,7 +162,7 @@ def test_stall_is_refused(motor: Program, tmp_path: Path) -> None:
 def test_interrupt_ends_the_run_and_writes_the_files(motor: Program, tmp_path: Path, number: signal.Signals) -> None:
     command = motor.arguments(tmp_path, 60, None, "--realtime")
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        time.sleep(1.0)
+        until(lambda: traced(tmp_path) > 0.1)
         process.send_signal(number)
         stdout, stderr = process.communicate(timeout=10)
     assert (process.returncode, stderr) == (130, "")
@@ -164,12 +174,89 @@ def test_interrupt_ends_the_run_and_writes_the_files(motor: Program, tmp_path: P
     assert run.topics
 
 
-def test_trace_too_large_for_memory(motor: Program, tmp_path: Path) -> None:
+def test_hangup_of_the_terminal_ends_the_run_and_writes_the_files(motor: Program, tmp_path: Path) -> None:
+    command = motor.arguments(tmp_path, 60, None, "--realtime")
+    pid, terminal = pty.fork()
+    if pid == 0:
+        os.execv(command[0], command)
+    until(lambda: traced(tmp_path) > 0.1)
+    os.kill(pid, signal.SIGHUP)  # the shell's; the system's comes when the terminal closes
+    os.close(terminal)
+    assert os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]) == 130
+    run = Run(130, "", "", tmp_path)
+    assert len(run.trace["time"]) == run.statistics["cycles"] > 10
+    assert run.topics
+
+
+def test_hangup_is_ignored_under_nohup(motor: Program, tmp_path: Path) -> None:
+    command = motor.arguments(tmp_path, 1, None, "--realtime")
+    process = subprocess.Popen(["nohup", *command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    until(lambda: traced(tmp_path) > 0)
+    process.send_signal(signal.SIGHUP)
+    assert process.wait(10) == 0
+
+
+@pytest.mark.parametrize("mode", ["--realtime", "--pace=1"])
+def test_a_killed_run_keeps_its_rows_up_to_the_last_second(
+    motor: Program, connected_motor: Program, tmp_path: Path, mode: str
+) -> None:
+    program = motor if mode == "--realtime" else connected_motor
+    command = program.arguments(tmp_path, 60, None, mode)
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        reached = until(lambda: traced(tmp_path)) - time.monotonic()
+        time.sleep(3.0)
+        reached += time.monotonic()
+        process.kill()
+        process.communicate(timeout=10)
+    for name in ("trace.csv", "topics.csv"):
+        rows = (tmp_path / name).read_text().split("\n")[1:-1]
+        assert reached - 1.0 < float(rows[-1].split(",")[0]) <= 60, name
+
+
+def resident(pid: int, key: str) -> int:
+    """A value of the process's status, in kB."""
+    words = next(line for line in Path(f"/proc/{pid}/status").read_text().splitlines() if line.startswith(key)).split()
+    return int(words[1])
+
+
+def test_the_memory_of_a_trace_does_not_depend_on_the_duration(tmp_path: Path) -> None:
     plain = compile_program(tmp_path / "plain", [PROGRAMS / "motor.c", *platform_sources()], sanitize=[])
-    run = Program(plain).run(tmp_path, 1e9, None, "--realtime")
-    assert run.status == 1
-    assert "error: not enough memory for a trace of " in run.stderr
-    assert "hint: in real time the whole trace is kept in memory; choose a shorter --duration" in run.stderr
+    command = Program(plain).arguments(tmp_path, 1e9, None, "--realtime")
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        until(lambda: traced(tmp_path) > 0.3)
+        used = [resident(process.pid, key) for key in ("VmRSS:", "VmLck:")]
+        process.terminate()
+        _, stderr = process.communicate(timeout=10)
+    assert (process.returncode, stderr) == (130, b"")
+    assert max(used) < 40_000, used
+
+
+def test_rows_that_a_slow_file_does_not_take_are_counted(tmp_path: Path) -> None:
+    """The trace goes to a pipe that nobody reads for a while.  The control loop goes on."""
+    defines = ["PERIOD_NS=50000", "STEPS_PER_PERIOD=1", "OVERRUN_LIMIT=0"]
+    sources = [PROGRAMS / "motor.c", *platform_sources()]
+    program = Program(compile_program(tmp_path / "fast", sources, defines=defines, sanitize=[]))
+    os.mkfifo(tmp_path / "trace.csv")
+    command = program.arguments(tmp_path, 6, None, "--realtime")
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        with (tmp_path / "trace.csv").open() as pipe:
+            time.sleep(6.0)
+            times = [float(line.split(",")[0]) for line in pipe.readlines()[1:]]
+        stdout, stderr = process.communicate(timeout=30)
+    statistics = Run(0, stdout, stderr, tmp_path).statistics
+    assert process.returncode == 0
+    assert statistics["trace_dropped"] == statistics["cycles"] - len(times) > 0
+    assert stderr == (
+        f"warning: {statistics['trace_dropped']} rows of the trace are missing: the file was written too slowly\n"
+    )
+    assert all(later > earlier for earlier, later in pairwise(times))
+
+
+def test_a_full_disk_is_reported(motor: Program, tmp_path: Path) -> None:
+    command = [str(motor.path), "--realtime", "--duration", "0.5", "--trace", "/dev/full"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 1
+    assert done.stderr == "/dev/full: error: cannot write this file: No space left on device\n"
 
 
 def run_checked(program: Path, *arguments: str) -> subprocess.CompletedProcess[str]:

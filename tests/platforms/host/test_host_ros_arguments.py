@@ -180,7 +180,7 @@ def test_parameters_enable_nothing(motor: Program, tmp_path: Path) -> None:
     run = motor.run_good(tmp_path, 0.003, "time,topic,value\n0,$enable,0\n", *gain)
     assert run.trace["enabled"] == [0.0, 0.0, 0.0]
     run = motor.run_good(tmp_path, 0.003, "time,topic,value\n0,$enable,0\n0.001,$enable,1\n", *gain)
-    assert run.trace["enabled"] == [0.0, 1.0, 1.0]
+    assert run.trace["enabled"] == [0.0, 0.0, 1.0]  # a stop disables two cycles
     assert run.trace["outputs.duty"][-1] == pytest.approx(0.1), "the value stays when the model is initialised"
 
 

@@ -239,8 +239,8 @@ def test_statistics(motor: Program, tmp_path: Path) -> None:
         "name", "mode", "scheduler", "memory_locked", "period", "duration", "wall_time", "interrupted", "cycles",
         "overruns", "missed", "outputs_late", "lateness_min", "lateness_mean", "lateness_p99", "lateness_p999",
         "lateness_max", "interval_deviation_min", "interval_deviation_rms", "interval_deviation_max", "computation_min",
-        "computation_mean", "computation_max", "clamped", "setpoints_dropped", "setpoint_timeouts", "faults",
-        "enabled", "fault", "fault_component", "lateness_histogram",
+        "computation_mean", "computation_max", "trace_dropped", "clamped", "setpoints_dropped", "setpoint_timeouts",
+        "faults", "enabled", "fault", "fault_component", "lateness_histogram",
     ]  # fmt: skip
     assert (statistics["name"], statistics["mode"], statistics["scheduler"]) == ("motor", "simulated", "simulated")
     assert (statistics["period"], statistics["duration"]) == (0.001, 0.5)

@@ -9,15 +9,15 @@ import pytest
 
 from tests.runtime.program import compile_program, names_in, run_program
 
-from .program import HOST, PROGRAMS
+from .program import CONSOLE, HOST, PROGRAMS, SCAN
 
 TESTS = PROGRAMS / "udp_session_tests.c"
 
 
 @pytest.fixture(scope="module")
 def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    sources = [TESTS, HOST / "src" / "linux" / "udp_session.c"]
-    return compile_program(tmp_path_factory.mktemp("udp") / "tests", sources, includes=[HOST / "src"])
+    sources = [TESTS, HOST / "src" / "links" / "linux" / "udp_session.c", *SCAN]
+    return compile_program(tmp_path_factory.mktemp("udp") / "tests", sources, includes=[HOST / "src", CONSOLE])
 
 
 @pytest.mark.parametrize("name", names_in(TESTS))

@@ -77,7 +77,7 @@ static bool stored(const char *text)
 
 static bool write_text(const char *text)
 {
-    return epg_port_store_write(text, strlen(text));
+    return epg_port_store_write(text, strlen(text)) == NULL;
 }
 
 static void newest_counts(void)
@@ -115,7 +115,7 @@ static void refusals(void)
     char large[CAPACITY + 1U] = {0};
     begin();
     REQUIRE(write_text("kept"));
-    REQUIRE(!epg_port_store_write(large, sizeof large));
+    REQUIRE(epg_port_store_write(large, sizeof large) != NULL);
     permitted = false;
     REQUIRE(!write_text("lost") && stored("kept"));
 }

@@ -10,14 +10,12 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 from unittest import mock
 
 from tests.emulator.toolchain import skip_if_missing, tool
-from tests.middlewares.client import Lines
 from tests.platforms.firmware.builds import PROCESSORS, build
-from tests.platforms.firmware.free_running import ICOUNT
-from tests.platforms.firmware.qemu import Board, qemu
+from tests.platforms.firmware.free_running import FreeRunning
+from tests.platforms.firmware.qemu import qemu
 
 HERE = Path(__file__).resolve().parent
 BOARDS = {"mps2_an386": "m4f", "mps2_an500": "m7"}
@@ -68,37 +66,11 @@ def image(board: str, platform: str, controller: str = "jiwy", **settings: str) 
     return folder / "program"
 
 
-class OneCore:
+class OneCore(FreeRunning):
     """A board that runs, with a test at its lines."""
 
+    LINES = ("agent", "console", "orders")
+    STATE = State
+
     def __init__(self, board: str, platform: str, controller: str = "jiwy", **settings: str) -> None:
-        self._board = Board(
-            board.replace("_", "-"), image(board, platform, controller, **settings), uarts=3, options=ICOUNT
-        )
-        self.agent, console, orders = self._board.lines
-        self.console = Lines(console.fileno(), console.fileno())
-        self._orders = Lines(orders.fileno(), orders.fileno())
-
-    def __enter__(self) -> OneCore:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._board.__exit__(kind, value, trace)
-
-    def give(self, letter: str) -> None:
-        """Gives an order that has no answer."""
-        self._orders.send(letter)
-
-    def order(self, letter: str) -> State:
-        self._orders.send(letter)
-        (line,) = self._orders.until("")
-        return State(*map(int, line.split()))
-
-    def let_pass(self, milliseconds: int) -> State:
-        """The state after that much of the board's time, at least."""
-        begin = state = self.order("?")
-        while state.time_us - begin.time_us < 1000 * milliseconds:
-            state = self.order("?")
-        return state
+        super().__init__(board.replace("_", "-"), image(board, platform, controller, **settings))

@@ -3,15 +3,20 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
+from tests.cmake.project import ROOT
 from tests.emulator.toolchain import skip_if_missing, tool
+from tests.platforms.firmware.builds import PROCESSORS
 from tests.platforms.firmware.socket_link import SocketLink
 from tests.xrce_agent import Agent, float64, read_float64
 
-from .board import OneCore, image
+from .board import HERE, OneCore, image
 
 RUNNING, PRIORITY = 1, 8
 """Errors of ``epg/mcu.h``."""
@@ -247,6 +252,53 @@ def test_a_project_can_add_the_kernel_itself() -> None:
         board.console.ask("enable")
         state = board.let_pass(100)
         assert (state.missed, state.fault, state.enabled) == (0, 0, 1)
+
+
+WRONG = """#include "{config}"
+#undef configSUPPORT_STATIC_ALLOCATION
+#define configSUPPORT_STATIC_ALLOCATION 0
+#undef configSUPPORT_DYNAMIC_ALLOCATION
+#define configSUPPORT_DYNAMIC_ALLOCATION 1
+#undef INCLUDE_uxTaskGetStackHighWaterMark
+#undef configTICK_RATE_HZ
+#define configTICK_RATE_HZ ((TickType_t)100)
+"""
+LINES = [
+    "#define configSUPPORT_STATIC_ALLOCATION 1",
+    "#define INCLUDE_uxTaskGetStackHighWaterMark 1",
+    "#define configTICK_RATE_HZ 1000",
+]
+
+
+@pytest.mark.parametrize("known", [True, False], ids=["while it configures", "by the compiler"])
+def test_all_wrong_settings_of_the_kernel_are_one_message(known: bool, tmp_path: Path) -> None:
+    """CMake does not know a folder that only a build can evaluate: then the compiler reports the settings."""
+    skip_if_missing(kernel, lambda: PROCESSORS["m7"].tool("gcc"))
+    config = ROOT / "targets/platforms/freertos/config/FreeRTOSConfig.h"
+    (tmp_path / "FreeRTOSConfig.h").write_text(WRONG.format(config=config))
+    settings = {
+        "CMAKE_TOOLCHAIN_FILE": HERE.parent / "firmware/toolchains/arm.cmake",
+        "PROCESSOR": " ".join(PROCESSORS["m7"].options),
+        "BOARD": "mps2_an500",
+        "PLATFORM": "freertos",
+        "CONTROLLER": "jiwy",
+        "KERNEL": kernel(),
+        "FREERTOS_PORT": "GCC_ARM_CM7",
+        "FREERTOS_CONFIG": tmp_path if known else f"$<1:{tmp_path}>",
+        "Python3_EXECUTABLE": sys.executable,
+    }
+    build = tmp_path / "build"
+    command = ["cmake", "-S", str(HERE / "program"), "-B", str(build), *(f"-D{n}={v}" for n, v in settings.items())]
+    done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "CMAKE_GENERATOR": "Ninja"})
+    assert (done.returncode != 0) == known, done.stderr
+    if known:
+        shown = [line.strip() for line in done.stderr.splitlines() if "#define" in line]
+        assert f"Write in {tmp_path}/FreeRTOSConfig.h:" in " ".join(done.stderr.split())
+        assert [line.split(" /*")[0] for line in shown] == LINES
+    else:
+        done = subprocess.run(["ninja", "-C", build], capture_output=True, text=True)
+        failed, *_ = (text for text in done.stdout.split("FAILED: ")[1:] if "needs in FreeRTOSConfig.h" in text)
+        assert all(line in failed for line in LINES), done.stdout
 
 
 def kernel() -> Path:

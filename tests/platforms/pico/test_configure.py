@@ -69,12 +69,6 @@ def test_a_project_without_the_sdk(tmp_path: Path) -> None:
     assert said.count("CMake Error") == 1
 
 
-def test_no_sdk_anywhere(tmp_path: Path) -> None:
-    skip_if_missing(arm_gcc)
-    said = configure(tmp_path, SDK + target(), bare=True)
-    assert "Raspberry Pi Pico SDK was not found. Get it: git clone --depth 1 --branch 2.2.0" in said
-
-
 def test_a_variable_that_leads_elsewhere(tmp_path: Path) -> None:
     skip_if_missing(arm_gcc)
     said = configure(tmp_path, SDK, PICO_SDK_PATH=str(tmp_path))

@@ -14,7 +14,7 @@ import pytest
 
 from tests.emulator.build import build
 from tests.emulator.emulator import CYCLES_PER_MILLISECOND, Emulator
-from tests.platforms.pico.closed_loop.robot import WRAP_EXCEPTION, connect
+from tests.platforms.pico.closed_loop.robot import AXES, WRAP_EXCEPTION, connect
 from tests.platforms.pico.images import PLATFORMS, images, skip_unless_emulated
 
 TYPICAL, SLOWEST = (45_000, 400), (400_000, 3_000)
@@ -171,3 +171,30 @@ def test_the_host_of_usb_waits(on_usb: Callable[[tuple[int, int]], Bench], times
     assert said.count("ok save") == 1
     assert said.count("ok setpoint") == 100
     bench.assert_control_is_undisturbed()
+
+
+def assert_a_stop_wins(bench: Bench) -> None:
+    """The first cycle after the write sees it: the enable before it does not act.  An enable after it acts."""
+    pins = [pin for axis in AXES for pin in axis.outputs]
+    bench.pico.call("watch_pins", pins=pins)
+    bench.save()
+    bench.send("enable\n")
+    bench.pico.run(milliseconds=write_ms(TYPICAL) / 2)
+    bench.send("disable\n")
+    bench.pico.run(milliseconds=write_ms(TYPICAL) / 2 - 1)
+    assert "ok" not in bench.heard(), "core 0 is still writing"
+    bench.pico.run(milliseconds=100)
+    said = bench.heard()
+    assert "error enable refused: stopped by" in said
+    assert "ok disable" in said
+    assert "state enabled=1" not in said
+    assert [edge for edge in bench.pico.call("take", log="pins") if edge[2]] == []
+    bench.assert_control_is_undisturbed()
+
+
+def test_a_stop_over_usb_during_the_write_wins(on_usb: Callable[[tuple[int, int]], Bench]) -> None:
+    assert_a_stop_wins(on_usb(TYPICAL))
+
+
+def test_a_stop_over_a_uart_during_the_write_wins(on_uart: Callable[[tuple[int, int]], Bench]) -> None:
+    assert_a_stop_wins(on_uart(TYPICAL))

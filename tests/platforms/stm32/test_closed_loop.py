@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from epg.simulate.executable import read_trace, run_executable
+from epg.runs.executable import run_executable
+from epg.runs.recording import read_table
 from tests.platforms.stm32.images import PLATFORMS, host
 from tests.platforms.stm32.jiwy import AXES, SIGNALS, Jiwy
 
@@ -37,8 +38,8 @@ def simulated(jiwy: Jiwy, folder: Path) -> dict[str, list[float]]:
     run_executable(
         host() / "jiwy_host", folder, len(jiwy.rows) / 1000, setpoints, realtime=False, progress=lambda message: None
     )  # fmt: skip
-    trace = read_trace(folder / "trace.csv", [*SIGNALS, *DUTIES])
-    return {name: list(values) for name, values in trace.items()}
+    trace = read_table(folder / "trace.csv", {*SIGNALS, *DUTIES}.__contains__).signals
+    return {name: list(signal.value) for name, signal in trace.items()}
 
 
 @pytest.mark.parametrize("platform", PLATFORMS)

@@ -89,6 +89,33 @@ def test_the_tick_goes_on_while_parameters_are_saved(platform: str, two_banks: b
     assert f"{NAME}=2.5" in ask(chip, "get")
 
 
+@pytest.mark.parametrize("platform", PLATFORMS)
+def test_a_stop_that_comes_while_parameters_are_saved_wins(platform: str) -> None:
+    """The enable that came before it does not act; an enable after it does."""
+    chip = machine(platform)
+    line = chip.uarts[3].line
+    chip.flash.erase_time = 0.1
+    boot(chip)
+    ask(chip, f"set {NAME}=2.5")
+    ask(chip, "disable")
+    line.send(b"save\r\n")
+    chip.run_until(lambda: chip.flash.busy, longest=0.1)
+    line.send(b"enable\r\n")
+    chip.run(0.03)
+    line.send(b"disable\r\n")
+    chip.run(0.03)
+    assert chip.flash.busy
+    assert b"able" not in line.received
+    chip.run_until(lambda: b"ok disable" in line.received, longest=0.5)
+    said = line.take().decode()
+    assert "ok save" in said
+    assert "error enable refused: stopped by" in said
+    assert "state enabled=1" not in said
+    assert stats(chip)["enabled"] == "0"
+    assert "ok enable" in ask(chip, "enable")
+    assert chip.resets == chip.dma.errors == chip.cache.hazards == []
+
+
 @pytest.mark.parametrize("two_banks", [False, True])
 def test_parameters_are_whole_when_the_power_is_cut(two_banks: bool) -> None:
     """In the erasure, in the first word, and in the last one, of the head."""

@@ -22,7 +22,7 @@ CYCLE = (
     "sample", "read_sources", "inputs_finite", "model_init", "model_step", "model_finite", "model_stopped",
     "prepare_actuators", "write_actuators", "make_safe", "monitor",
 )  # fmt: skip
-SOURCE = ROOT / "targets" / "platforms" / "mcu" / "one_core" / "src" / "control.c"
+SOURCE = ROOT / "targets" / "mcu" / "one_core" / "src" / "control.c"
 
 
 def control_stack(elf: Path) -> tuple[int, list[str]]:
@@ -30,10 +30,12 @@ def control_stack(elf: Path) -> tuple[int, list[str]]:
     known = functions(elf)
     jog = [name for name in known if re.search(r"_jog_duty$|_encoder_\w+_(count|position)$", name)]
     observed = [name for name in known if re.search(r"_jog_duty_applied$|_encoder_\w+_position$", name)]
+    measured = [name for name in known if name.startswith("measured_")]
     dynamic = [name for name in known if "RELbot_Control16CalculateDynamicEv" in name]
     pointers = {
         "epg_one_core_on_tick": ["make_safe", *(n for n in ("epg_family_service_pend",) if n in known)],
         "epg_control_cycle": [name for name in CYCLE if name in known],
+        "epg_setpoints_update": measured,
         "epg_parameters_restore": ["set_parameters"],
         "epg_parameters_apply": ["set_parameters"],
         "epg_jog_cycle": jog,

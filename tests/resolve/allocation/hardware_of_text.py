@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 
-from epg.catalog.catalog import load_catalog
-from epg.check.configuration import check_configuration
-from epg.data import targets_roots
-from epg.diagnostics import Diagnostics
-from epg.documents.tcf import load_tcf_chain
-from epg.resolve.allocation import Assignment, allocate
-from epg.resolve.claims import ClaimKey, component_claims, tick_claims
+from epg.generator.catalog.catalog import load_catalog
+from epg.generator.check.configuration import check_configuration
+from epg.generator.data import targets_roots
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.tcf import load_tcf_chain
+from epg.generator.resolve.allocation import Assignment, allocate
+from epg.generator.resolve.claims import ClaimKey, component_claims, tick_claims
 
 
 @dataclass(frozen=True)

@@ -15,9 +15,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from epg.catalog.hardware import Divider
-from epg.quantity import show
-from epg.resolve.divider import NEAR_ENOUGH, clock_range, divide, neighbours
+from epg.generator.catalog.hardware import Divider
+from epg.generator.quantity import show
+from epg.generator.resolve.divider import NEAR_ENOUGH, clock_range, divide, neighbours
 
 TARGETS = Path(__file__).with_name("targets")
 ENCODER = "{kind: quadrature_encoder, counts_per_revolution: 100, pins: {a: %s, b: %s}}"

@@ -10,16 +10,16 @@ from pathlib import Path
 
 import pytest
 
-from epg.catalog.catalog import load_catalog
-from epg.check.configuration import Configuration
-from epg.check.other_code import OtherUse
-from epg.data import targets_roots
-from epg.diagnostics import Diagnostics
-from epg.project import Request, load_configuration
-from epg.resolve.allocation import Hardware
-from epg.resolve.first_fit import Signal, first_fit, signals_of, usable_pin, with_pins
-from epg.resolve.resolve import allocate_claims
-from epg.source import Span
+from epg.generator.catalog.catalog import load_catalog
+from epg.generator.check.configuration import Configuration
+from epg.generator.check.other_code import OtherUse
+from epg.generator.data import targets_roots
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.project import Request, load_configuration
+from epg.generator.resolve.allocation import Assignments
+from epg.generator.resolve.first_fit import ClaimSignal, first_fit, signals_of, usable_pin, with_pins
+from epg.generator.resolve.resolve import allocate_claims
+from epg.generator.source import Span
 
 BOARDS = ("rpi_pico", "rpi_pico2", "rpi_pico_w", "rpi_pico2_w", "nucleo_h743zi", "nucleo_h743zi2", "nucleo_f767zi")
 PERIOD = Fraction(1, 1000)
@@ -47,7 +47,7 @@ def configuration(tmp_path: Path, target: str, lines: list[str]) -> Configuratio
     return found
 
 
-def allocated(found: Configuration, pins: dict[Signal, str]) -> Hardware:
+def allocated(found: Configuration, pins: dict[ClaimSignal, str]) -> Assignments:
     diagnostics = Diagnostics()
     result = allocate_claims(with_pins(found, pins), found, PERIOD, diagnostics)
     assert result is not None, [problem.message for problem in diagnostics]
@@ -59,9 +59,9 @@ def allocated(found: Configuration, pins: dict[Signal, str]) -> Hardware:
 def test_a_robot_without_pins_gets_pins_that_a_build_accepts(tmp_path: Path, board: str, platform: str) -> None:
     found = configuration(tmp_path, f"{board}_{platform}", THREE_AXES)
     assert set(signals_of(found).values()) == {""}
-    start = time.monotonic()
+    start = time.process_time()
     pins = first_fit(found, PERIOD)
-    assert time.monotonic() - start < 5
+    assert time.process_time() - start < 5
     assert pins is not None and pins.keys() == signals_of(found).keys()
     assert len(set(pins.values())) == 3 * 6
     assert all(usable_pin(found.target, pin) for pin in pins.values())
@@ -116,9 +116,9 @@ def test_encoders_and_outputs_share_the_timers(tmp_path: Path) -> None:
 def test_too_many_claims_are_refused_quickly(tmp_path: Path) -> None:
     lines = [f"e{n}: {{kind: quadrature_encoder, counts_per_revolution: 100}}" for n in range(7)]
     found = configuration(tmp_path, "nucleo_h743zi_bare_metal", lines)
-    start = time.monotonic()
+    start = time.process_time()
     assert first_fit(found, PERIOD) is None
-    assert time.monotonic() - start < 5
+    assert time.process_time() - start < 5
     many = configuration(tmp_path, "rpi_pico_bare_metal", [f"out{n}: {{kind: digital_output}}" for n in range(27)])
     assert first_fit(many, PERIOD) is None
 

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import pytest
 
-from epg.catalog.catalog import load_catalog
-from epg.check.configuration import Configuration
-from epg.data import targets_roots
-from epg.diagnostics import Diagnostics
-from epg.project import Request, load_configuration
-from epg.resolve.first_fit import Signal, with_pins
-from epg.resolve.pin_options import STATES, PinOption, pin_options
-from epg.resolve.resolve import allocate_claims
+from epg.generator.catalog.catalog import load_catalog
+from epg.generator.check.configuration import Configuration
+from epg.generator.data import targets_roots
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.project import Request, load_configuration
+from epg.generator.resolve.first_fit import ClaimSignal, with_pins
+from epg.generator.resolve.pin_options import STATES, PinOption, pin_options
+from epg.generator.resolve.resolve import allocate_claims
 
 PERIOD = Fraction(1, 1000)
 CATALOG = load_catalog(targets_roots([]), Diagnostics())
@@ -27,7 +27,7 @@ def configuration(name: str) -> Configuration:
     return found
 
 
-def options(found: Configuration, signal: Signal) -> dict[str, PinOption]:
+def options(found: Configuration, signal: ClaimSignal) -> dict[str, PinOption]:
     return {option.pin: option for option in pin_options(found, PERIOD, signal)}
 
 
@@ -41,7 +41,7 @@ def robot(tmp_path: Path, target: str, *lines: str) -> Configuration:
 
 @pytest.mark.parametrize("signal", [("pwm_pan", "value"), ("pwm_tilt", "direction_b"), ("encoder_pan", "b")])
 @pytest.mark.parametrize("name", ["rpi_pico_bare_metal_jiwy", "nucleo_h743zi_freertos_jiwy"])
-def test_a_pin_fits_exactly_if_a_build_accepts_it(name: str, signal: Signal) -> None:
+def test_a_pin_fits_exactly_if_a_build_accepts_it(name: str, signal: ClaimSignal) -> None:
     found = configuration(name)
     all_options = options(found, signal)
     board = found.target.board

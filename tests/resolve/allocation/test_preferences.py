@@ -9,9 +9,9 @@ from pathlib import Path
 import hardware_of_text as hardware
 import pytest
 
-from epg.catalog.catalog import load_catalog
-from epg.data import targets_roots
-from epg.diagnostics import Diagnostics
+from epg.generator.catalog.catalog import load_catalog
+from epg.generator.data import targets_roots
+from epg.generator.diagnostics import Diagnostics
 
 TARGETS = Path(__file__).with_name("targets")
 ROOT = Path(__file__).resolve().parents[3]
@@ -67,7 +67,7 @@ def test_zephyr_keeps_its_timer(tmp_path: Path) -> None:
 
 
 def test_the_drivers_table_of_triggers_is_that_of_the_chip() -> None:
-    source = (ROOT / "targets" / "families" / "stm32" / "series" / "h7" / "timers.c").read_text(encoding="utf-8")
+    source = (ROOT / "targets" / "families" / "stm32" / "src" / "h7" / "timers.c").read_text(encoding="utf-8")
     rows = re.findall(r"\[(\d+)\] = \{APB\d\(\1\)(.*?)\},\n", source, re.DOTALL)
     target = load_catalog(targets_roots(), Diagnostics()).find_target("nucleo_h743zi_bare_metal")
     assert target is not None

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from epg.resolve.search import WHOLE, Demand, Place, _Problem, _Use, find_places
+from epg.generator.resolve.search import WHOLE, Demand, Place, _Problem, _Use, find_places
 
 
 def fits(demands: Sequence[Demand], places: Sequence[Place]) -> bool:

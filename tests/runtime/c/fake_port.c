@@ -121,14 +121,14 @@ size_t epg_port_store_read(void *data, size_t size)
     return taken;
 }
 
-bool epg_port_store_write(const void *data, size_t size)
+const char *epg_port_store_write(const void *data, size_t size)
 {
     if (fake_port.store_refuses || size > FAKE_STORE) {
-        return false;
+        return "the fake memory is worn out";
     }
     memcpy(fake_port.store, data, size);
     fake_port.store_size = size;
-    return true;
+    return NULL;
 }
 
 bool epg_port_uart_start(const epg_port_uart_t *uart)
@@ -151,4 +151,9 @@ void epg_port_wait_until(uint64_t time_ns)
 const char *epg_port_serial(void)
 {
     return "E6616407E3A51B2C";
+}
+
+uint32_t epg_port_boot_id(void)
+{
+    return FAKE_BOOT_ID;
 }

@@ -9,7 +9,7 @@
 #include "epg/port.h"
 #include "epg/port_uart.h"
 
-enum { FAKE_UNITS = 8, FAKE_PINS = 32, FAKE_STORE = 1024 };
+enum { FAKE_UNITS = 8, FAKE_PINS = 32, FAKE_STORE = 1024, FAKE_BOOT_ID = 0x1234567 };
 
 typedef struct fake_port {
     uint64_t now_ns;             /**< result of epg_port_time_ns() */

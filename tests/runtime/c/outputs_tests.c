@@ -261,6 +261,32 @@ TEST(an_output_of_no_component_cannot_be_made_safe)
     CHECK_EQUAL(outputs.component, UINT16_MAX);
 }
 
-RUN(ENTRY(one_pwm_and_two_direction_pins), ENTRY(two_pwm_pins), ENTRY(the_other_input_of_a_bridge_is_no_way_out),
-    ENTRY(direction_pins_make_up_for_a_pwm), ENTRY(a_pwm_makes_up_for_direction_pins),
-    ENTRY(an_output_of_no_component_cannot_be_made_safe))
+static unsigned int taken_rows; /* one bit each */
+
+static bool note_take_over(size_t row, bool high)
+{
+    CHECK(!high);
+    taken_rows |= 1U << row;
+    return true;
+}
+
+TEST(only_the_component_whose_output_refused_is_given_up)
+{
+    static const epg_output_group_t groups[] = {
+        {.component = 3, .first = 2, .count = 3, .state_count = 3, .states = single_states},
+        {.component = 4, .first = 5, .count = 2, .state_count = 2, .states = dual_states},
+        {.component = 5, .first = 7, .count = 2, .state_count = 2, .states = dual_states}};
+    for (size_t row = 5; row < 7; row++) {
+        taken_rows = 0;
+        epg_outputs_start(&outputs, groups, 3);
+        epg_outputs_refused(&outputs, row, note_take_over);
+        CHECK_EQUAL(outputs.component, 4);
+        CHECK(outputs.refused && !outputs.unsafe);
+        CHECK_EQUAL(taken_rows, 1U << row); /* the other output was low since the start */
+        for (size_t other = 2; other < 9; other++) {
+            CHECK(epg_outputs_may_write(&outputs, other) == (other < 5 || other > 6));
+        }
+    }
+}
+
+RUN()

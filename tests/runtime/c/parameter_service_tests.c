@@ -5,6 +5,7 @@
 #include "epg/parameter_services.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "check.h"
 #include "epg/cdr.h"
@@ -14,7 +15,7 @@
 
 enum { KP, TAU, A, B, COUNT };
 enum { LIST, GET, TYPES, DESCRIBE, SET, ATOMIC, STORE, SERVICES };
-enum { DOUBLE = 3, INTEGER = 2, REQUEST = 1200, REPLY = 1024, MS = 1000000 };
+enum { INTEGER = 2, DOUBLE = 3, STRING = 4, REQUEST = 1200, REPLY = 1024, MS = 1000000 };
 
 static const epg_service_t services[SERVICES] = {
     [LIST] = {.name = "~/list_parameters", .kind = &epg_service_list_parameters, .request_size = 256},
@@ -123,6 +124,9 @@ static void begin(void)
     room = true;
     sent = 0;
     epg_node_start(&node, &target, send_message);
+    for (int i = 0; i < EPG_CLOCK_ANSWERS; i++) { /* messages with a stamp do not wait for the clock */
+        epg_clock_answer(&node.clock, UINT64_C(1700000000000000000), fake_port.now_ns, 0);
+    }
     epg_node_connected(&node, fake_port.now_ns);
     fake_cycles(3);
 }
@@ -154,8 +158,11 @@ static void write_parameter(const char *name, uint8_t type, double value)
     epg_cdr_write_string(&writer, name);
     epg_cdr_write_u8(&writer, type);
     epg_cdr_write_u8(&writer, 1);
-    epg_cdr_write_f64(&writer, 1e300); /* integer_value: any eight bytes */
-    epg_cdr_write_f64(&writer, value);
+    const int64_t integer = type == INTEGER ? (int64_t)value : INT64_MIN; /* the value of another type is not used */
+    double bits;
+    memcpy(&bits, &integer, sizeof bits);
+    epg_cdr_write_f64(&writer, bits);
+    epg_cdr_write_f64(&writer, type == INTEGER ? -1e300 : value);
     epg_cdr_write_string(&writer, "text");
     epg_cdr_write_u32(&writer, 1); /* bytes */
     epg_cdr_write_u8(&writer, 7);
@@ -383,14 +390,15 @@ TEST(descriptions_have_limits_and_units)
 TEST(accepted_values_act_in_one_cycle_and_each_has_its_result)
 {
     begin();
-    write_count(7);
+    write_count(8);
     write_parameter("Pan.PID.kp", DOUBLE, 10.0);
     write_parameter("Pan.PID.kp", DOUBLE, 10.5);
-    write_parameter("Pan.PID.tauD", INTEGER, 1.0);
+    write_parameter("Pan.PID.kp", INTEGER, 11.0);
+    write_parameter("Pan.PID.tauD", STRING, 1.0);
     write_parameter("b", DOUBLE, NAN);
     write_parameter("Pan.PID.kx", DOUBLE, 1.0);
     write_parameter("Tilt.a", DOUBLE, 5.0);
-    write_parameter("Tilt.a", DOUBLE, 6.0);
+    write_parameter("Tilt.a", INTEGER, 6.0);
     CHECK_EQUAL(send_request(SET), EPG_SERVICE_TAKEN);
     CHECK(!epg_service_poll(&node, fake_port.now_ns));
     CHECK_EQUAL(model[KP], 2.6);
@@ -398,10 +406,11 @@ TEST(accepted_values_act_in_one_cycle_and_each_has_its_result)
     CHECK_EQUAL(wait(), 1);
     CHECK_EQUAL(sets, 1);
     CHECK_EQUAL(steps_at_set, steps);
-    CHECK_EQUAL(epg_cdr_read_u32(&reader), 7);
+    CHECK_EQUAL(epg_cdr_read_u32(&reader), 8);
     check_result(true, "");
     check_result(false, "Parameter {Pan.PID.kp} doesn't comply with floating point range.");
-    check_result(false, "Wrong parameter type, parameter {Pan.PID.tauD} is of type {double}, setting it to {integer} "
+    check_result(false, "Parameter {Pan.PID.kp} doesn't comply with floating point range.");
+    check_result(false, "Wrong parameter type, parameter {Pan.PID.tauD} is of type {double}, setting it to {string} "
                         "is not allowed.");
     check_result(false, "Parameter {b} must be a finite number.");
     check_result(false, "parameter 'Pan.PID.kx' cannot be set because it was not declared");
@@ -474,7 +483,7 @@ TEST(without_cycles_the_result_says_so)
 TEST(no_value_enables_the_target)
 {
     begin();
-    epg_control_request(&fake.control, false);
+    epg_stop(&fake.control, EPG_STOP_PROGRAM);
     fake_cycles(2);
     write_count(2);
     write_parameter("enable", DOUBLE, 1.0);
@@ -570,7 +579,7 @@ static void poll(void)
 {
     for (unsigned int i = 0; i < 6; i++) { /* one period */
         fake_cycle();
-        epg_node_poll(&node, fake_port.now_ns);
+        (void)epg_node_poll(&node, fake_port.now_ns);
     }
 }
 
@@ -621,7 +630,7 @@ TEST(changes_that_do_not_fit_into_one_event_follow)
     for (unsigned int i = 0; i < 60; i++) {
         const unsigned int before = sent;
         fake_cycle();
-        epg_node_poll(&node, fake_port.now_ns);
+        (void)epg_node_poll(&node, fake_port.now_ns);
         told += sent > before ? read_event() : 0U;
     }
     CHECK_EQUAL(sent, 2);
@@ -638,7 +647,7 @@ TEST(parameters_are_stored_while_the_actuators_are_off)
     ask(STORE);
     check_result(false, "the actuators must be off: disable first");
     end();
-    epg_control_request(&fake.control, false);
+    epg_stop(&fake.control, EPG_STOP_PROGRAM);
     fake_cycles(2);
     ask(STORE);
     check_result(true, "1 value is stored");
@@ -650,16 +659,8 @@ TEST(parameters_are_stored_while_the_actuators_are_off)
     end();
     fake_port.store_refuses = true;
     ask(STORE);
-    check_result(false, "this target cannot store parameters");
+    check_result(false, "the fake memory is worn out");
     end();
 }
 
-RUN(ENTRY(all_parameters_are_listed_with_their_prefixes), ENTRY(prefixes_and_depths_are_those_of_rclcpp),
-    ENTRY(values_are_read_in_the_order_of_the_request), ENTRY(a_reply_has_the_values_of_one_instant),
-    ENTRY(a_request_that_names_an_unknown_parameter_has_an_empty_reply), ENTRY(types_are_double),
-    ENTRY(descriptions_have_limits_and_units), ENTRY(accepted_values_act_in_one_cycle_and_each_has_its_result),
-    ENTRY(atomically_all_values_or_none), ENTRY(a_request_waits_for_the_changes_of_another_one),
-    ENTRY(without_cycles_the_result_says_so), ENTRY(no_value_enables_the_target),
-    ENTRY(requests_that_are_cut_off_are_malformed), ENTRY(any_bytes_are_taken_or_refused),
-    ENTRY(an_event_tells_each_change_once), ENTRY(an_event_that_could_not_be_sent_is_told_later_with_the_newest_value),
-    ENTRY(changes_that_do_not_fit_into_one_event_follow), ENTRY(parameters_are_stored_while_the_actuators_are_off))
+RUN()

@@ -166,12 +166,12 @@ TEST(changes_outlive_enabling)
     fake_cycle();
     CHECK(change(1, 0.07));
     fake_cycle();
-    epg_control_request(&fake.control, false);
+    epg_stop(&fake.control, EPG_STOP_PROGRAM);
     fake_cycles(2);
     CHECK(change(2, 5.0)); /* while disabled: the model keeps running */
     fake_cycle();
     CHECK_EQUAL(model[2], 5.0);
-    epg_control_request(&fake.control, true);
+    epg_control_enable(&fake.control, EPG_ENABLE_ANY);
     forget();
     const unsigned int inits = fake.inits;
     fake_cycle();
@@ -193,7 +193,7 @@ TEST(a_model_that_rests_is_not_touched_until_it_is_initialised)
     fake_cycle();
     CHECK(epg_parameters_idle(&parameters));
     CHECK_EQUAL(sets, 0);
-    epg_control_request(&fake.control, true);
+    epg_control_enable(&fake.control, EPG_ENABLE_ANY);
     fake_cycle();
     CHECK_EQUAL(model[0], 9.0);
 }
@@ -208,7 +208,7 @@ TEST(stored_values_are_back_after_a_restart)
     fake_cycle();
     CHECK(change(9, -1e-300));
     fake_cycle();
-    CHECK(epg_store_save(&store, &stored));
+    CHECK(epg_store_save(&store, &stored) == NULL);
     CHECK_EQUAL(stored, 2);
 
     make(1); /* the next start: the store is unchanged */
@@ -223,21 +223,34 @@ TEST(stored_values_are_back_after_a_restart)
     CHECK_EQUAL(sets, 1);
 }
 
-TEST(stored_values_outside_of_new_limits_are_refused)
+TEST(of_stored_values_only_those_outside_of_new_limits_are_refused)
 {
     size_t stored;
     begin();
     CHECK(change(0, 5.0));
     fake_cycle();
-    CHECK(epg_store_save(&store, &stored));
+    CHECK(change(1, 3.0));
+    fake_cycle();
+    CHECK(change(9, -7.0));
+    fake_cycle();
+    CHECK(epg_store_save(&store, &stored) == NULL);
+    CHECK(parameters.stored == EPG_STORED_SAVED);
     make(1);
     for (size_t i = 0; i < COUNT; i++) {
         limits[i] = (epg_parameter_limits_t){-4.0, 4.0};
     }
     parameters.limits = limits;
     epg_store_load(&store);
-    CHECK(parameters.stored == EPG_STORED_NOTHING);
+    CHECK(parameters.stored == EPG_STORED_PARTLY);
     CHECK_EQUAL(epg_parameters_value(&parameters, 0), 2.6);
+    CHECK_EQUAL(epg_parameters_value(&parameters, 1), 3.0);
+    CHECK(changed[1] && !changed[0] && !changed[9]);
+    CHECK(strcmp(epg_store_refused(&store, 0), table[0].name) == 0);
+    CHECK(strcmp(epg_store_refused(&store, 1), table[9].name) == 0);
+    CHECK(epg_store_refused(&store, 2) == NULL);
+    CHECK(epg_store_save(&store, &stored) == NULL);
+    CHECK_EQUAL(stored, 1);
+    CHECK(epg_store_refused(&store, 0) == NULL);
 }
 
 TEST(a_value_that_is_as_generated_again_is_not_stored)
@@ -248,7 +261,7 @@ TEST(a_value_that_is_as_generated_again_is_not_stored)
     fake_cycle();
     CHECK(change(0, 2.6));
     fake_cycle();
-    CHECK(epg_store_save(&store, &stored));
+    CHECK(epg_store_save(&store, &stored) == NULL);
     CHECK_EQUAL(stored, 0);
     make(1);
     CHECK(parameters.stored == EPG_STORED_LOADED);
@@ -262,7 +275,7 @@ static void store_some(void)
     fake_cycle();
     CHECK(change(0, 0.1));
     fake_cycle();
-    CHECK(epg_store_save(&store, &stored));
+    CHECK(epg_store_save(&store, &stored) == NULL);
 }
 
 static void check_as_generated(epg_parameters_stored_t expected)
@@ -287,7 +300,7 @@ TEST(a_store_with_any_wrong_bit_is_refused)
     for (size_t bit = 0; bit < fake_port.store_size * 8U; bit++) {
         fake_port.store[bit / 8U] ^= (unsigned char)(1U << bit % 8U);
         make(1);
-        check_as_generated(bit / 8U >= MODEL && bit / 8U < MODEL + 8U ? EPG_STORED_FOR_OTHER : EPG_STORED_NOTHING);
+        check_as_generated(bit / 8U >= MODEL && bit / 8U < MODEL + 8U ? EPG_STORED_FOR_OTHER : EPG_STORED_DAMAGED);
         fake_port.store[bit / 8U] ^= (unsigned char)(1U << bit % 8U);
     }
     make(1);
@@ -301,7 +314,7 @@ TEST(a_store_that_is_cut_off_is_refused)
         const size_t whole = fake_port.store_size;
         fake_port.store_size = size;
         make(1);
-        check_as_generated(EPG_STORED_NOTHING);
+        check_as_generated(size == 0 ? EPG_STORED_NOTHING : EPG_STORED_DAMAGED);
         fake_port.store_size = whole;
     }
 }
@@ -333,7 +346,8 @@ TEST(a_port_that_stores_nothing_says_so)
     size_t stored;
     begin();
     fake_port.store_refuses = true;
-    CHECK(!epg_store_save(&store, &stored));
+    CHECK(strcmp(epg_store_save(&store, &stored), "the fake memory is worn out") == 0);
+    CHECK(parameters.stored == EPG_STORED_NOTHING);
 }
 
 TEST(a_change_that_a_stop_has_left_is_forgotten)
@@ -345,11 +359,4 @@ TEST(a_change_that_a_stop_has_left_is_forgotten)
     CHECK_EQUAL(epg_parameters_value(&parameters, 0), 2.6);
 }
 
-RUN(ENTRY(changes_act_between_two_steps_and_all_in_one_cycle), ENTRY(all_changes_or_none),
-    ENTRY(limits_are_possible_values_and_others_are_refused), ENTRY(stored_values_outside_of_new_limits_are_refused),
-    ENTRY(a_change_waits_for_the_one_before), ENTRY(changes_outlive_enabling),
-    ENTRY(a_model_that_rests_is_not_touched_until_it_is_initialised), ENTRY(stored_values_are_back_after_a_restart),
-    ENTRY(a_value_that_is_as_generated_again_is_not_stored), ENTRY(values_of_another_model_are_refused),
-    ENTRY(a_store_with_any_wrong_bit_is_refused), ENTRY(a_store_that_is_cut_off_is_refused),
-    ENTRY(random_bytes_are_no_store), ENTRY(a_port_that_stores_nothing_says_so),
-    ENTRY(a_change_that_a_stop_has_left_is_forgotten))
+RUN()

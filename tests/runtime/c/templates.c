@@ -389,16 +389,4 @@ TEST(values_of_messages_are_where_their_ports_say)
     CHECK_EQUAL(read[1], 4.0);
 }
 
-RUN(ENTRY(span_gives_radians_at_the_load), ENTRY(inverted_span_counts_backwards_and_reads_the_same_angle),
-    ENTRY(counts_per_revolution_and_gear), ENTRY(pins_and_pull_up_are_handed_on),
-    ENTRY(reset_loads_the_preset_in_the_next_cycle),
-    ENTRY(encoder_with_a_greatest_speed_checks_the_time_between_samples),
-    ENTRY(bridge_drives_the_plant_with_the_duty_written), ENTRY(preparing_changes_no_output),
-    ENTRY(inverted_bridge_is_wired_the_other_way_and_moves_the_plant_the_same), ENTRY(bridge_says_what_it_applies),
-    ENTRY(bridge_is_off_between_two_directions_by_default), ENTRY(bridge_with_dead_time_and_brake),
-    ENTRY(dual_bridge_drives_the_plant_with_the_duty_written),
-    ENTRY(dual_bridge_with_slow_decay_moves_the_plant_the_same), ENTRY(guard_sees_duty_and_angle),
-    ENTRY(guard_knows_the_resets_of_its_encoder), ENTRY(encoder_whose_decoder_has_stopped),
-    ENTRY(probes_toggle_at_their_point_only), ENTRY(pwm_drives_the_plant_with_the_duty_written),
-    ENTRY(digital_input_from_the_plant), ENTRY(digital_output_to_the_plant), ENTRY(topics_and_constant),
-    ENTRY(messages_are_as_large_as_kinds_say), ENTRY(values_of_messages_are_where_their_ports_say))
+RUN()

@@ -18,11 +18,11 @@ from pathlib import Path
 
 import pytest
 
-from epg.diagnostics import Diagnostics
-from epg.emit.cmake import PathNames
-from epg.emit.outputs import application_outputs
-from epg.project import Request, load_application
-from epg.source import Span
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.emit.cmake import PathNames
+from epg.generator.emit.outputs import application_outputs
+from epg.generator.project import Request, load_application
+from epg.generator.source import Span
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent.parent
@@ -102,7 +102,7 @@ def test_it_is_the_same_each_time_and_names_no_folder(name: str) -> None:
 def test_dtc_reads_the_overlay(name: str, tmp_path: Path) -> None:
     """dtc checks the grammar, with a number in place of each macro: the macros are defined by Zephyr."""
     if shutil.which("dtc") is None:
-        pytest.skip("overlays are read by dtc: apt install device-tree-compiler")
+        pytest.skip("overlays are read by dtc: sudo apt install device-tree-compiler")
     text = generated(name)["jiwy.overlay"]
     text = re.sub(r"^#.*\n", "", text, flags=re.MULTILINE)
     text = re.sub(r"\b[A-Z][A-Z0-9_]{3,}\b(?![^\"\n]*\"[^\"]*$)", "1", text)

@@ -20,6 +20,11 @@ uint64_t turntable_time_ns(void)
     return (((uint64_t)half << 31) | (now & 0x7FFFFFFFu)) * 1000u;
 }
 
+uint32_t turntable_boot_id(void)
+{
+    return random_number();
+}
+
 uint16_t turntable_encoder_count(void)
 {
     return encoder_count();

@@ -12,7 +12,7 @@
  */
 #include <string.h>
 
-#include "sdk.h"
+#include "epg/pico_sdk.h"
 
 #if !LIB_PICO_MEM_OPS_PICO
 

@@ -10,7 +10,7 @@
 
 #include "epg/family.h"
 #include "epg/pico.h"
-#include "sdk.h"
+#include "epg/pico_sdk.h"
 
 /* port.c ------------------------------------------------------------------------------------------------------- */
 

@@ -3,8 +3,8 @@
  * @file
  * The start of the USB device, and its serial number.
  */
-#include "../../../platforms/mcu/usb/usb.h"
 #include "../src/parts.h"
+#include "epg/usb.h"
 #include "usb_sdk.h"
 
 static void on_interrupt(void)

@@ -6,7 +6,7 @@
 #ifndef EPG_PICO_USB_RESET_H
 #define EPG_PICO_USB_RESET_H
 
-#include "../../../platforms/mcu/usb/usb.h"
+#include "epg/usb.h"
 
 /** Number of the interface. */
 #define EPG_USB_RESET EPG_USB_FAMILY

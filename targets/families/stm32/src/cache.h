@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "device.h"
+#include "epg/stm32_device.h"
 
 /** Writes changed lines from the cache to memory.  Also waits until all earlier writes have reached memory. */
 static inline void epg_stm32_cache_clean(const void *address, size_t size)

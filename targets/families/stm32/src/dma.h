@@ -17,7 +17,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "device.h"
+#include "epg/stm32_device.h"
 
 #define EPG_STM32_STREAMS 16U
 

@@ -6,18 +6,18 @@
  *
  * The files here cite the reference manual RM0433 of the STM32H743, revision 8; RM0410 of the STM32F767 has the same
  * registers.
- * The files in series/ have what differs, and cite the manual of their series.
+ * The folders f7 and h7 have the parts that differ, and cite the manual of their series.
  */
 #ifndef EPG_STM32_PARTS_H
 #define EPG_STM32_PARTS_H
 
 #include <stdatomic.h>
 
-#include "device.h"
 #include "epg/family.h"
 #include "epg/one_core.h"
 #include "epg/port.h"
 #include "epg/stm32.h"
+#include "epg/stm32_device.h"
 
 /**
  * Places a function, a variable or a table of the control cycle in tightly coupled memory (ITCM, DTCM), if the linker
@@ -80,7 +80,7 @@ void epg_stm32_quadrature_stop_all(void);
 /** Starts TIM7, if it does not run.  Returns false if other code uses it. */
 bool epg_stm32_time_start(void);
 
-/* series/: what differs between the series of STM32 ------------------------------------------------------------ */
+/* f7, h7: what differs between the series of STM32 ------------------------------------------------------------- */
 
 /** A timer. */
 struct epg_stm32_timer {
@@ -108,6 +108,9 @@ void epg_stm32_enable_port(uint32_t port);
  * data of the chip.  0 if there is no such clock, or if its source cannot be known.
  */
 uint32_t epg_stm32_clock_hz(const char *name);
+
+/** Switches the clock on that RNG measures its noise with, or off if it was off before.  Within epg_stm32_enter(). */
+void epg_stm32_random_clock(bool on);
 
 /**
  * NULL if the chip and its voltage permit the frequency that the core has; else the reason, for example that the

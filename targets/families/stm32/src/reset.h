@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "device.h"
+#include "epg/stm32_device.h"
 
 /* watchdog.c --------------------------------------------------------------------------------------------------- */
 
@@ -19,7 +19,7 @@ void epg_stm32_watchdog_feed_alone(void);
 /** From now on only a running target feeds the watchdog. */
 void epg_stm32_watchdog_abandon(void);
 
-/* series/: reset.c --------------------------------------------------------------------------------------------- */
+/* f7, h7: reset.c ---------------------------------------------------------------------------------------------- */
 
 /** The flags of the last resets. */
 uint32_t epg_stm32_reset_read(void);

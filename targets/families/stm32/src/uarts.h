@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The UARTs of a series of chips, and the streams of the DMA that serve them.  `series/<series>/uarts.c` has them.
+ * The UARTs of a series of chips, and the streams of the DMA that serve them.  `<series>/uarts.c` has them.
  */
 #ifndef EPG_STM32_UARTS_H
 #define EPG_STM32_UARTS_H

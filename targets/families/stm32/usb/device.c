@@ -6,7 +6,7 @@
  * The interrupt has the priority of EPG's transports, and never that of the tick.  It only moves packets between the
  * FIFOs of the device and memory; the communication side does everything else.
  */
-#include "../../../platforms/mcu/usb/usb.h"
+#include "epg/usb.h"
 #include "hardware.h"
 
 static void on_interrupt(void)

@@ -18,10 +18,11 @@
 
 /*
  * The communication side writes `state` while the target is off, and to request a stop; the control side writes it to end
- * a stop.  A fault handler can write SAFE at any time.  All accesses are loads and stores of single words, which every
- * processor has.
+ * a stop.  A fault handler can come between any two of these steps.  It therefore has a word of its own, which nobody
+ * clears.  All accesses are loads and stores of single words, which every processor has.
  */
 static atomic_uint state;
+static atomic_bool made_safe;
 static atomic_bool in_cycle; /* written by the control side */
 static atomic_bool in_turn;  /* written by the communication side */
 
@@ -30,6 +31,11 @@ static struct {
     epg_firmware_tick_t tick;
 } run;
 
+static unsigned int present_state(void)
+{
+    return atomic_load(&made_safe) ? (unsigned int)EPG_FIRMWARE_SAFE : atomic_load(&state);
+}
+
 static const epg_application_t *application(void)
 {
     return run.firmware->target->application;
@@ -37,7 +43,7 @@ static const epg_application_t *application(void)
 
 bool epg_firmware_start(const epg_firmware_target_t *firmware)
 {
-    if (atomic_load(&state) != EPG_FIRMWARE_OFF || atomic_load(&in_turn)) {
+    if (present_state() != EPG_FIRMWARE_OFF || atomic_load(&in_turn)) {
         return false;
     }
     if (!epg_serve_start_transport(firmware->transport, "EPG ROS 2") ||
@@ -60,7 +66,7 @@ static void wait_for_tick(void)
     const uint64_t begin_ns = epg_port_time_ns();
     uint64_t last_ns = begin_ns;
     uint32_t reads = 0;
-    while (atomic_load(&state) == EPG_FIRMWARE_STOPPING && last_ns - begin_ns < 4U * application()->period_ns &&
+    while (present_state() == EPG_FIRMWARE_STOPPING && last_ns - begin_ns < 4U * application()->period_ns &&
            reads < READS_OF_A_DEAD_CLOCK) {
         const uint64_t now_ns = epg_port_time_ns();
         reads = now_ns == last_ns ? reads + 1U : 0U;
@@ -80,12 +86,12 @@ bool epg_firmware_stop(void)
     if (atomic_load(&in_cycle) || atomic_load(&in_turn)) {
         return false;
     }
-    if (atomic_load(&state) != EPG_FIRMWARE_RUNNING) {
+    if (present_state() != EPG_FIRMWARE_RUNNING) {
         return true;
     }
     atomic_store(&state, EPG_FIRMWARE_STOPPING);
     wait_for_tick();
-    if (atomic_load(&state) == EPG_FIRMWARE_STOPPING) { /* there are no ticks: the timer does not run */
+    if (present_state() == EPG_FIRMWARE_STOPPING) { /* there are no ticks: the timer does not run */
         application()->safe();
         atomic_store(&state, EPG_FIRMWARE_OFF);
     }
@@ -96,7 +102,7 @@ bool epg_firmware_stop(void)
 
 void epg_firmware_cycle(void)
 {
-    const unsigned int now = atomic_load(&state);
+    const unsigned int now = present_state();
     if (now == EPG_FIRMWARE_STOPPING && !atomic_load(&in_cycle)) {
         application()->safe();
         atomic_store(&state, EPG_FIRMWARE_OFF);
@@ -115,7 +121,7 @@ void epg_firmware_cycle(void)
     epg_control_cycle(control, run.tick.due_ns, missed);
     run.tick.ended_ns = epg_port_time_ns();
     /* epg_firmware_safe() may have been called during the cycle, and before the cycle wrote its outputs. */
-    if (atomic_load(&state) == EPG_FIRMWARE_SAFE) {
+    if (present_state() == EPG_FIRMWARE_SAFE) {
         application()->safe();
     }
     atomic_store(&in_cycle, false);
@@ -123,7 +129,7 @@ void epg_firmware_cycle(void)
 
 void epg_firmware_communicate(void)
 {
-    if (atomic_load(&state) != EPG_FIRMWARE_RUNNING || atomic_load(&in_turn)) {
+    if (present_state() != EPG_FIRMWARE_RUNNING || atomic_load(&in_turn)) {
         return;
     }
     atomic_store(&in_turn, true);
@@ -136,13 +142,13 @@ void epg_firmware_communicate(void)
 
 bool epg_firmware_alive(void)
 {
-    return atomic_load(&state) == EPG_FIRMWARE_RUNNING &&
+    return present_state() == EPG_FIRMWARE_RUNNING &&
            epg_control_silence(run.firmware->target->control) * (uint64_t)application()->period_ns < SILENCE_LIMIT_NS;
 }
 
 void epg_firmware_safe(const epg_firmware_target_t *firmware)
 {
-    atomic_store(&state, EPG_FIRMWARE_SAFE);
+    atomic_store(&made_safe, true);
     firmware->target->application->safe();
 }
 

@@ -6,7 +6,7 @@
  * After an error the outputs are made safe first.  The hooks are weak: a definition of the user replaces them.
  */
 #include "epg/family.h"
-#include "rtos.h"
+#include "epg/freertos.h"
 
 void vApplicationStackOverflowHook(TaskHandle_t task, char *name);
 void vApplicationIdleHook(void);

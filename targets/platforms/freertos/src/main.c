@@ -4,7 +4,7 @@
  * main() of an executable that contains a target and nothing else.
  */
 #include "epg/family.h"
-#include "rtos.h"
+#include "epg/freertos.h"
 
 /* <name>_start() of the target; CMake defines the name. */
 extern bool EPG_MCU_START(void);

@@ -7,8 +7,8 @@
  * make it wait longer than EPG_FAMILY_SERVICE_TIMEOUT_MS, the watchdog is no longer fed and resets the chip.
  */
 #include "epg/family.h"
+#include "epg/freertos.h"
 #include "epg/port_wait.h"
-#include "rtos.h"
 
 /**
  * Bytes of stack for the task itself, and for its registers while another task runs.  The middleware's bytes are added.

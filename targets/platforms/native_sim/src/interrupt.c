@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Ctrl-C and SIGTERM.  A part of the native simulator, the program around the image: Zephyr has no signals of Linux.
+ * Ctrl-C, SIGTERM, and the end of the terminal (SIGHUP).  A part of the native simulator, the program around the image: Zephyr has no signals of Linux.
  */
 #define _POSIX_C_SOURCE 200809L
 
@@ -26,4 +26,10 @@ void epg_native_sim_catch_interrupts(volatile int *flag)
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
+    /* The system and the shell each send a SIGHUP, so this handler must stay.  `nohup` has it ignored. */
+    struct sigaction hangup;
+    if (sigaction(SIGHUP, NULL, &hangup) == 0 && hangup.sa_handler != SIG_IGN) {
+        action.sa_flags = SA_RESTART;
+        sigaction(SIGHUP, &action, NULL);
+    }
 }

@@ -11,11 +11,11 @@
 #include <posix_native_task.h>
 #include <zephyr/kernel.h>
 
-#include "interface.h"
+#include "files/setpoints.h"
 #include "parts.h"
-#include "serial.h"
-#include "setpoints.h"
-#include "store.h"
+#include "port/serial.h"
+#include "port/store.h"
+#include "program/interface.h"
 
 BUILD_ASSERT(IS_ENABLED(CONFIG_EXTERNAL_LIBC),
              "EPG's native_sim reads and writes files of this computer: CONFIG_EXTERNAL_LIBC must be set");

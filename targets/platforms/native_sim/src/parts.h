@@ -9,8 +9,8 @@
 #include <stdbool.h>
 
 #include "epg/native_sim.h"
-#include "options.h"
-#include "run.h"
+#include "loop/run.h"
+#include "program/options.h"
 
 /* options.c ------------------------------------------------------------------------------------------------------ */
 

@@ -11,13 +11,13 @@
 #include <posix_native_task.h>
 #include <zephyr/kernel.h>
 
-#include "clock.h"
 #include "epg/plant.h"
 #include "epg/port.h"
-#include "files.h"
+#include "files/files.h"
+#include "loop/run.h"
 #include "parts.h"
-#include "report.h"
-#include "run.h"
+#include "port/clock.h"
+#include "program/report.h"
 
 #define NS_PER_US 1000U
 #define LONGEST_WAIT_US 1000000U

@@ -7,9 +7,9 @@
  */
 #include <zephyr/kernel.h>
 
-#include "clock.h"
+#include "links/services.h"
 #include "parts.h"
-#include "services.h"
+#include "port/clock.h"
 
 static epg_host_services_t services;
 
@@ -25,9 +25,9 @@ epg_transport_t epg_native_sim_terminal = {.start = start};
 
 /* This platform has no option for a console by UDP. */
 
-epg_host_udp_console_t *epg_host_udp_console_open(const char *address, const epg_target_t *target)
+epg_host_udp_console_t *epg_host_udp_console_open(const epg_host_options_t *options, const epg_target_t *target)
 {
-    ARG_UNUSED(address);
+    ARG_UNUSED(options);
     ARG_UNUSED(target);
     return NULL;
 }

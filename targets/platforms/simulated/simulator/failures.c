@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../host/src/number.h"
+#include "files/number.h"
 
 enum { LONGEST_LINE = 256 };
 

@@ -3,13 +3,14 @@
  * @file
  * The program that simulates a system: its options and files.
  */
+#include <fenv.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../host/src/number.h"
 #include "failures.h"
+#include "files/number.h"
 #include "report.h"
 #include "simulate.h"
 
@@ -51,13 +52,18 @@ static int usage(const epg_system_t *system, const char *problem, const char *wo
     return WRONG_OPTIONS;
 }
 
-static bool read_setpoints(member_t *member, const char *path)
+/** Reads the setpoints of `value`, TARGET=FILE.  Returns DONE, or another exit status after a message. */
+static int read_setpoints(simulation_t *simulation, const char *value)
 {
-    epg_host_free_setpoints(&member->events);
-    if (!epg_host_read_setpoints(path, member->unit->host, false, &member->events)) {
-        return false;
+    const char *equals = strchr(value, '=');
+    const size_t length = equals == NULL ? 0 : (size_t)(equals - value);
+    const size_t target = simulation_target(simulation->system, value, length);
+    if (target == simulation->system->target_count) {
+        return usage(simulation->system, "this does not name a target: ", value);
     }
-    return true;
+    member_t *member = &simulation->members[target];
+    epg_host_free_setpoints(&member->events);
+    return epg_host_read_setpoints(equals + 1, member->unit->host, false, &member->events) ? DONE : WRONG_OPTIONS;
 }
 
 /** Reads one option with its value.  Returns DONE, or another exit status after a message. */
@@ -86,13 +92,7 @@ static int take(simulation_t *simulation, options_t *options, const char *option
         return DONE;
     }
     if (strcmp(option, "--setpoints") == 0) {
-        const char *equals = strchr(value, '=');
-        const size_t length = equals == NULL ? 0 : (size_t)(equals - value);
-        const size_t target = simulation_target(simulation->system, value, length);
-        if (target == simulation->system->target_count) {
-            return usage(simulation->system, "this does not name a target: ", value);
-        }
-        return read_setpoints(&simulation->members[target], equals + 1) ? DONE : WRONG_OPTIONS;
+        return read_setpoints(simulation, value);
     }
     if (strcmp(option, "--events") == 0) {
         return failures_read(simulation, value) ? DONE : WRONG_OPTIONS;
@@ -105,6 +105,34 @@ static bool open_plant(simulation_t *simulation, const char *folder)
     const epg_system_plant_t *facts = simulation->system->plant;
     simulation->plant.facts = facts;
     return plant_open(&simulation->plant, folder, facts->file, facts->step_ns, facts->divisor, facts->starts_by_step);
+}
+
+/** Loads the system's plant, and its targets.  Returns false after a message. */
+static bool open_targets(simulation_t *simulation, const char *folder)
+{
+    const epg_system_t *system = simulation->system;
+    if (system->plant != NULL && !open_plant(simulation, folder)) {
+        return false;
+    }
+    for (size_t i = 0; i < system->target_count; i++) {
+        if (!member_open(&simulation->members[i], &system->targets[i], folder, &simulation->plant)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/** Reads all options.  Returns DONE, or another exit status after a message. */
+static int read_options(simulation_t *simulation, options_t *options, int argc, char **argv)
+{
+    for (int i = 1; i < argc; i += 2) {
+        const int status = i + 1 < argc ? take(simulation, options, argv[i], argv[i + 1])
+                                        : usage(simulation->system, "this option needs a value: ", argv[i]);
+        if (status != DONE) {
+            return status;
+        }
+    }
+    return options->duration_ns > 0 ? DONE : usage(simulation->system, "--duration is missing", "");
 }
 
 /** Opens FOLDER/`name`.csv.  Returns NULL after a message. */
@@ -127,6 +155,36 @@ static bool open_trace(member_t *member, const options_t *options)
     }
     const uint64_t cycles = options->duration_ns / member->unit->host->target->application->period_ns + 1U;
     return epg_host_trace_start(&member->trace, member->unit->host, member->file, false, cycles);
+}
+
+/** Opens the traces of the targets, and that of the system's plant.  Returns false after a message. */
+static bool open_traces(simulation_t *simulation, const options_t *options)
+{
+    for (size_t i = 0; i < simulation->system->target_count; i++) {
+        if (!open_trace(&simulation->members[i], options)) {
+            return false;
+        }
+    }
+    if (simulation->system->plant != NULL) {
+        FILE *file = open_csv(options, "plant");
+        if (file == NULL) {
+            return false;
+        }
+        plant_record(&simulation->plant, file);
+    }
+    return true;
+}
+
+/** Opens the file of all published values.  Returns false after a message. */
+static bool open_topics(simulation_t *simulation, const char *path)
+{
+    simulation->topics = fopen(path, "wb");
+    if (simulation->topics == NULL) {
+        fprintf(stderr, "%s: error: cannot write this file\n", path);
+        return false;
+    }
+    fputs("time,topic,value\n", simulation->topics);
+    return true;
 }
 
 static void print_state(const member_t *member)
@@ -160,47 +218,22 @@ static int run(simulation_t *simulation, options_t *options, int argc, char **ar
         help(system, stdout);
         return DONE;
     }
-    if (system->plant != NULL && !open_plant(simulation, options->folder)) {
+    if (!open_targets(simulation, options->folder)) {
         return FAILED;
-    }
-    for (size_t i = 0; i < system->target_count; i++) {
-        if (!member_open(&simulation->members[i], &system->targets[i], options->folder, &simulation->plant)) {
-            return FAILED;
-        }
     }
     if (argc == 2 && strcmp(argv[1], "--interface") == 0) {
         report_interface(simulation);
         return DONE;
     }
-    for (int i = 1; i < argc; i += 2) {
-        const int status = i + 1 < argc ? take(simulation, options, argv[i], argv[i + 1])
-                                        : usage(system, "this option needs a value: ", argv[i]);
-        if (status != DONE) {
-            return status;
-        }
+    const int status = read_options(simulation, options, argc, argv);
+    if (status != DONE) {
+        return status;
     }
-    if (options->duration_ns == 0) {
-        return usage(system, "--duration is missing", "");
+    if (options->trace != NULL && !open_traces(simulation, options)) {
+        return FAILED;
     }
-    for (size_t i = 0; options->trace != NULL && i < system->target_count; i++) {
-        if (!open_trace(&simulation->members[i], options)) {
-            return FAILED;
-        }
-    }
-    if (options->trace != NULL && system->plant != NULL) {
-        FILE *file = open_csv(options, "plant");
-        if (file == NULL) {
-            return FAILED;
-        }
-        plant_record(&simulation->plant, file);
-    }
-    if (options->topics != NULL) {
-        simulation->topics = fopen(options->topics, "wb");
-        if (simulation->topics == NULL) {
-            fprintf(stderr, "%s: error: cannot write this file\n", options->topics);
-            return FAILED;
-        }
-        fputs("time,topic,value\n", simulation->topics);
+    if (options->topics != NULL && !open_topics(simulation, options->topics)) {
+        return FAILED;
     }
     simulation->end_ns = options->duration_ns;
     simulation->seed = options->seed;
@@ -215,6 +248,8 @@ static int run(simulation_t *simulation, options_t *options, int argc, char **ar
 
 int epg_system_main(const epg_system_t *system, int argc, char **argv)
 {
+    /* A program that was linked with -ffast-math starts in a mode in which the processor replaces tiny numbers by zero. */
+    (void)fesetenv(FE_DFL_ENV);
     static options_t options;
     snprintf(options.folder, sizeof options.folder, "%s", argv[0]);
     char *slash = strrchr(options.folder, '/');

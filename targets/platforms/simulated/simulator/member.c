@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../host/src/diverged.h"
+#include "loop/diverged.h"
 
 #define BILLION 1000000000U
 

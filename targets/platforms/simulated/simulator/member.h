@@ -10,9 +10,9 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "../../host/src/setpoints.h"
-#include "../../host/src/trace.h"
 #include "epg/system.h"
+#include "files/setpoints.h"
+#include "files/trace.h"
 #include "module.h"
 #include "plant.h"
 #include "stall.h"

@@ -5,8 +5,8 @@
  */
 #include "plant.h"
 
-#include "../../host/src/diverged.h"
-#include "../../host/src/number.h"
+#include "files/number.h"
+#include "loop/diverged.h"
 
 /** Moves the time of the next step on by one step.  The time is exact, so that errors do not add up. */
 static void count(plant_t *plant)

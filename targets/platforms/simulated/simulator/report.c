@@ -7,8 +7,8 @@
 
 #include <inttypes.h>
 
-#include "../../host/src/interface.h"
-#include "../../host/src/number.h"
+#include "files/number.h"
+#include "program/interface.h"
 
 static const char *const states[] = {
     [MEMBER_RUNS] = "runs",

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../host/src/number.h"
+#include "files/number.h"
 #include "random.h"
 
 static const epg_target_t *target_of(const member_t *member)

@@ -5,7 +5,7 @@
  */
 #include "epg/unit.h"
 
-#include "../../host/src/clock.h"
+#include "port/clock.h"
 
 /* Generated; CMake defines the names. */
 extern const epg_host_target_t EPG_UNIT_HOST;
@@ -54,7 +54,11 @@ static void receive(size_t setpoint, double value, uint64_t time_ns, bool publis
 
 static void request(bool enable)
 {
-    epg_control_request(control(), enable);
+    if (enable) {
+        epg_control_enable(control(), EPG_ENABLE_ANY);
+    } else {
+        epg_stop(control(), EPG_STOP_SCENARIO);
+    }
 }
 
 static bool monitor(double *values)

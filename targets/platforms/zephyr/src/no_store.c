@@ -12,9 +12,9 @@ size_t epg_port_store_read(void *data, size_t size)
     return 0;
 }
 
-bool epg_port_store_write(const void *data, size_t size)
+const char *epg_port_store_write(const void *data, size_t size)
 {
     (void)data;
     (void)size;
-    return false;
+    return "this target cannot store parameters";
 }

@@ -36,14 +36,11 @@ static bool start(void *context, const char *title)
 }
 
 /**
- * Drops all bytes after a program has closed the port: they are not for the next program.  Bytes in Zephyr's own buffer
- * (tx-fifo-size of the node) remain.
+ * Drops the bytes that a program has not read when it closed the port: they are not for the next program.  Bytes in
+ * Zephyr's own buffer (tx-fifo-size of the node) remain.  The bytes that it has sent are kept, because they can be a stop.
  */
-static void drop(port_t *port)
+static void drop_sent(port_t *port)
 {
-    unsigned char byte;
-    while (epg_ring_take(&port->received, &byte)) {
-    }
     const unsigned int key = irq_lock(); /* the interrupt takes bytes from this ring, too */
     port->sent.taken_at = port->sent.put_at;
     atomic_store(&port->sent.taken, atomic_load(&port->sent.put));
@@ -55,7 +52,7 @@ static void poll(void *context)
     port_t *port = context;
     const bool open = is_open(port);
     if (port->open && !open) {
-        drop(port);
+        drop_sent(port);
     }
     port->open = open;
     epg_zephyr_lines_go_on(&port->lines);
@@ -67,7 +64,7 @@ static void flush(void *context)
     epg_zephyr_lines_send(&port->lines);
 }
 
-/* True if a program on the host has opened the port: terminals and agents then set the DTR line. */
+/* True if a program on the host reads the port: most terminals and agents set the DTR line when they open it. */
 static bool connected(void *context)
 {
     const port_t *port = context;

@@ -79,7 +79,8 @@ typedef struct epg_parameter_access {
 /**
  * Delivers `value` to setpoint `index`, as if it had been received in a message now.  If a message for the same
  * setpoint takes effect in the same cycle, the one that was received later counts.  Returns false before the first
- * epg_control_start(), and if the value is not finite; such a value is dropped and counted.
+ * epg_control_start(), and if the value is not finite or outside of the setpoint's limits; such a value is dropped and
+ * counted.
  */
 bool epg_access_set(epg_setpoint_access_t *self, epg_control_t *control, size_t index, double value);
 

@@ -21,7 +21,7 @@
  *
  * And a communication side:
  *
- *     epg_control_request(&control, true);                                          // enable
+ *     epg_control_enable(&control, EPG_ENABLE_ANY);                                 // enable; epg_stop() disables
  *     epg_control_receive(&control, setpoint_index, 0.5, epg_port_time_ns(), true); // a new setpoint
  *     if (epg_control_monitor(&control, values)) { ... }                            // the newest monitoring values
  *     epg_control_alive(&control);
@@ -30,8 +30,11 @@
  * |-----------------------------------------|----------------------------------------------------------------------|
  * | target is disabled                      | actuators are safe within one cycle; sensors, topics and the model   |
  * |                                         | continue; encoder resets are withheld, so that zero positions stay   |
- * | target is enabled                       | the model is initialised again; timeouts start again                 |
- * | setpoint not finite                     | dropped and counted; the value before it stays                       |
+ * | target is stopped                       | the same, in at least two cycles; older requests to enable do not    |
+ * |                                         | act (epg/stop.h)                                                     |
+ * | target is enabled                       | the model is initialised again; setpoints that must be fresh begin   |
+ * |                                         | again; the ages of the others go on                                  |
+ * | setpoint not finite, or outside limits  | dropped and counted; the value before it stays                       |
  * | model input, state or output not finite | disabled, fault EPG_FAULT_NOT_FINITE; the model is stopped           |
  * | model asks to stop (stopsimulation)     | disabled, fault EPG_FAULT_MODEL_STOPPED; the model is stopped        |
  * | `overrun_limit` overruns in a row       | disabled, fault EPG_FAULT_OVERRUN                                    |
@@ -55,23 +58,53 @@
 
 #include "epg/capture.h"
 #include "epg/exchange.h"
+#include "epg/finite.h"
 #include "epg/history.h"
 #include "epg/jog.h"
 #include "epg/parameters.h"
 #include "epg/status.h"
+#include "epg/stop.h"
 #include "epg/telemetry.h"
 
 /** The reaction to a setpoint that is older than its timeout: keep the value, use 0, or disable the target. */
 typedef enum epg_timeout_action { EPG_TIMEOUT_HOLD, EPG_TIMEOUT_ZERO, EPG_TIMEOUT_DISABLE } epg_timeout_action_t;
 
-/** The description of one setpoint, from the `.tcf`. */
+/**
+ * The description of one setpoint, from the `.tcf` and the bindings.
+ *
+ * A value that moves something must not act after a stop: a `fresh` setpoint forgets its value when the target is
+ * enabled.  It begins with `initial`, or with the measured value that it follows, and only a value that was received
+ * after the enabling changes it.  Every other setpoint keeps its newest value.
+ */
 typedef struct epg_setpoint {
     double initial;      /**< value before the first sample, and after a timeout that disabled the target */
     double rate_limit;   /**< largest change per second of the model's value; 0: unlimited */
-    uint64_t timeout_ns; /**< largest age, from the reception or the last enabling; 0: never too old */
+    double minimum;      /**< smallest value that is accepted */
+    double maximum;      /**< largest value that is accepted; not more than `minimum`: every finite value is accepted */
+    uint64_t timeout_ns; /**< largest age, from the reception; 0: never too old */
     epg_timeout_action_t action;
-    uint16_t component; /**< index of the component that receives it, for EPG_FAULT_SETPOINT_TIMEOUT */
+    bool fresh; /**< values that were received before the last enabling do not act */
+    /** Returns the measured value that it follows, in its own unit.  Runs after sample(), on the control side.  NULL: it
+     *  follows nothing.  Otherwise `fresh` must be true. */
+    double (*measured)(void);
+    uint16_t component;  /**< index of the component that receives it, for EPG_FAULT_SETPOINT_TIMEOUT */
+    uint16_t guard;      /**< index of the component that guards the axis that it follows, or EPG_NO_COMPONENT */
+    const char *follows; /**< name of the signal that it follows, such as "inputs.position_pan"; NULL: none */
+    const char *unit;    /**< unit of a received value; NULL: not known */
 } epg_setpoint_t;
+
+/** Returns true if `setpoint` has limits. */
+static inline bool epg_setpoint_is_limited(const epg_setpoint_t *setpoint)
+{
+    return setpoint->maximum > setpoint->minimum;
+}
+
+/** Returns true if a received value can be used: it is finite and inside of the limits. */
+static inline bool epg_setpoint_accepts(const epg_setpoint_t *setpoint, double value)
+{
+    return epg_is_finite(value) &&
+           (!epg_setpoint_is_limited(setpoint) || (value >= setpoint->minimum && value <= setpoint->maximum));
+}
 
 /** One received value of a setpoint, on its way from the communication side to the control side. */
 typedef struct epg_setpoint_sample {
@@ -84,10 +117,12 @@ typedef struct epg_setpoint_sample {
 typedef struct epg_setpoint_state {
     double value;      /**< value for the model, after timeout and rate limit */
     double target;     /**< newest sample, or the value that its timeout has put in its place */
-    uint64_t fresh_ns; /**< start of its age: the reception, or the enabling if that was later */
+    uint64_t fresh_ns; /**< start of its age: the reception */
+    uint64_t since_ns; /**< samples that were received before this time do not act */
     uint32_t count;    /**< `count` of the newest sample of the communication side; 0: none yet */
-    bool received;     /**< a sample has been received: the value has an age */
-    bool timed_out;    /**< true from a timeout to the next sample or enabling */
+    bool begins;       /**< the next update begins with `initial`, or with the measured value */
+    bool received;     /**< `target` is a received value, and has an age */
+    bool timed_out;    /**< true from a timeout to the next sample, or to the enabling that forgets the value */
 } epg_setpoint_state_t;
 
 /**
@@ -192,18 +227,20 @@ struct epg_control {
             epg_fault_t fault;
             uint64_t time_ns; /**< tick of the newest cycle */
             epg_statistics_t statistics;
+            uint64_t stop_number;
+            uint64_t stop_ns;
+            epg_stop_source_t stop_source;
         };
     };
     bool initialise;     /**< the model must be initialised in this or the next cycle */
     bool model_valid;    /**< false: the model is not initialised, or stopped after a fault */
-    bool setpoints_move; /**< a setpoint has a timeout or a rate limit: values change without a new sample */
+    bool setpoints_move; /**< values of setpoints change without a new sample: epg_setpoints_start() */
     uint64_t sampled_ns; /**< time at which the sensors were sampled in the newest cycle */
     uint32_t until_step; /**< cycles until the model's next step */
     uint32_t consecutive_overruns;
-    uint32_t request_seen;
-    atomic_uint request; /**< written by the communication side: (sequence << 2) | (leased << 1) | enable */
     atomic_uint lease;   /**< written by the communication side: end of the lease, in units of 2^20 ns, modulo 2^32 */
     atomic_uint dropped; /**< written by the communication side: number of refused setpoints */
+    uint32_t refused;    /**< communication side: 1 + index of the setpoint that was refused last; 0: none */
     atomic_uint reconnects; /**< written by the communication side */
     atomic_uint alive;      /**< written by the communication side; 0 before the first epg_control_alive() */
     unsigned int alive_seen;
@@ -223,6 +260,7 @@ struct epg_control {
     atomic_bool observed;             /**< epg_control_observe() has been called */
     atomic_bool reset;                /**< epg_control_reset() was called; the next cycle clears it */
     epg_access_t *_Atomic accesses;   /**< the first access of the user's program; NULL: none is used */
+    epg_latch_t latch;                /**< stops and requests to enable; last, because a start keeps it */
 };
 
 #define EPG_STATUS_MEMBER(member)                                                                                      \
@@ -233,13 +271,16 @@ EPG_STATUS_MEMBER(leased);
 EPG_STATUS_MEMBER(fault_component);
 EPG_STATUS_MEMBER(fault);
 EPG_STATUS_MEMBER(time_ns);
+EPG_STATUS_MEMBER(stop_number);
+EPG_STATUS_MEMBER(stop_ns);
+EPG_STATUS_MEMBER(stop_source);
 EPG_STATUS_MEMBER(statistics);
 #undef EPG_STATUS_MEMBER
 
 /*
  * One context must be the control side, and one other context the communication side.  Several contexts may share the
- * communication side if they take turns.  Only epg_control_request() may be called from every context; of two calls at
- * the same time, one takes effect.
+ * communication side if they take turns.  Only epg_stop(), epg_control_enable() and epg_control_reset() may be called
+ * from every context.
  */
 
 /* Control side ----------------------------------------------------------------------------------------------- */
@@ -299,8 +340,8 @@ static inline double epg_control_setpoint(const epg_control_t *control, size_t i
  * (epg_port_time_ns()).
  *
  * Values that arrived in one message can take effect in the same cycle: pass `publish` false for all of them but the
- * last.  Returns false if there is no such setpoint, or if the value is not finite.  A value that is not finite is
- * dropped and counted; with `publish` true, the values delivered before it are published all the same.
+ * last.  Returns false if there is no such setpoint, or if epg_setpoint_accepts() is false: the value is then dropped
+ * and counted.  With `publish` true, the values delivered before it are published all the same.
  */
 bool epg_control_receive(epg_control_t *control, size_t index, double value, uint64_t received_ns, bool publish);
 
@@ -320,19 +361,17 @@ bool epg_control_status(epg_control_t *control, epg_status_t *status);
 bool epg_control_observe(epg_control_t *control, epg_status_t *status);
 
 /**
- * Requests to enable or to disable the target; takes effect in the next cycle.  Enabling initialises the model and
- * clears a latched fault.  May be called from every context.
+ * Requests to enable the target for the user's program (epg_gate_enable()): `request` is EPG_ENABLE_ANY or
+ * epg_enable_after().  May be called from every context.  A request from the communication side uses its gate instead.
  */
-void epg_control_request(epg_control_t *control, bool enable);
+void epg_control_enable(epg_control_t *control, unsigned int request);
 
 /**
- * Requests to enable the target on a lease: it stays enabled only until `until_ns` (board time, at most 2^51 ns ahead),
- * which epg_control_extend() moves.  When that time has passed, the next cycle latches EPG_FAULT_OPERATOR.  A target
- * that is enabled already keeps its way of being enabled.  Only one context may call this function and the next one.
+ * Moves the end of the lease to `until_ns` (board time, at most 2^51 ns ahead), rounded down to a multiple of 2^20 ns
+ * (1.05 ms).  When that time has passed, the next cycle of a target that is enabled on a lease latches
+ * EPG_FAULT_OPERATOR, and ends a movement by hand on the lease (EPG_JOG_LEASED).  Must be called before the request for
+ * either.  Only one context may call it.
  */
-void epg_control_request_leased(epg_control_t *control, uint64_t until_ns);
-
-/** Moves the end of the lease to `until_ns`, rounded down to a multiple of 2^20 ns (1.05 ms). */
 void epg_control_extend(epg_control_t *control, uint64_t until_ns);
 
 /**

@@ -9,7 +9,7 @@
 #include "epg/node.h"
 
 /** Bytes of the largest message, for all names and numbers, and for a serial number of at most 64 characters. */
-#define EPG_DIAGNOSTICS_SIZE 1280
+#define EPG_DIAGNOSTICS_SIZE 1536
 
 /** The `message` of a publication with the role EPG_TOPIC_DIAGNOSTICS.  epg_diagnostics_write() writes it. */
 extern const epg_message_t epg_message_diagnostic_array;

@@ -4,7 +4,7 @@
  * Moving one actuator of a disabled target by hand, for a short time: the first test of a new robot's wiring.
  *
  * During a movement the model is not stepped, and no other actuator is driven.  Afterwards the model is initialised
- * again.  A request to enable or disable, a fault, or the fail-safe input ends the movement within one cycle.  The
+ * again.  Enabling, a stop, a fault, or the fail-safe input ends the movement within one cycle.  The
  * encoders are read before and after it, so that the user sees which encoder has moved, and how far.
  */
 #ifndef EPG_JOG_H
@@ -40,10 +40,13 @@ typedef struct epg_jog_reading {
 
 /** How a movement ended. */
 typedef enum epg_jog_end {
-    EPG_JOG_DONE,    /**< after the requested time */
+    EPG_JOG_DONE,    /**< after the requested time, or at the end of its lease */
     EPG_JOG_REFUSED, /**< never started: the target is enabled, or its fail-safe input is inactive */
     EPG_JOG_STOPPED  /**< early: by a request, a fault or the fail-safe input */
 } epg_jog_end_t;
+
+/** A number of cycles: the movement lasts until the lease ends, which epg_control_extend() must have been told before. */
+enum { EPG_JOG_LEASED = 0 };
 
 /** The state of movements.  The generator sets the first block of members. */
 typedef struct epg_jog {
@@ -55,17 +58,15 @@ typedef struct epg_jog {
     epg_jog_reading_t *last;  /**< `encoder_count` readings at its end */
     double *values;           /**< memory of epg_jog_observe(): a value for each actuator, then for each encoder */
 
-    epg_handover_t handover; /**< of the readings and of the members below, except `stop` */
+    epg_handover_t handover; /**< of the readings and of the members below */
     size_t actuator;
     double duty;
+    bool leased;     /**< the movement was requested with EPG_JOG_LEASED */
     uint32_t cycles; /**< requested duration in control cycles; after the end, the real duration */
     epg_jog_end_t end;
-    atomic_uint renewals; /**< number of renewals of movements; written by the communication side */
 
-    bool stop;                  /**< control side: no actuator may be driven in this cycle */
-    bool running;               /**< control side: a movement is in progress */
-    uint32_t elapsed;           /**< control side: cycles driven so far, since the last renewal */
-    unsigned int renewals_seen; /**< control side */
+    bool running;     /**< control side: a movement is in progress */
+    uint32_t elapsed; /**< control side: cycles driven so far */
 } epg_jog_t;
 
 /** Ends a movement that was left when the control loop stopped.  Must be called only while neither side is active. */
@@ -75,10 +76,11 @@ void epg_jog_clear(epg_jog_t *jog);
 
 /**
  * Drives the requested actuator, if there is a request.  Called in every cycle after the sensors were sampled.
- * `enabled` is true while the target is enabled.  If the result is true, the actuator was driven; the caller must then
- * neither step the model nor write another output.
+ * `permitted` is false while the target is enabled, and after a stop or a fault (epg_gate_move()): a movement ends then.
+ * `over` is true if the lease has ended: a movement that was requested on the lease ends then.
+ * If the result is true, the actuator was driven; the caller must then neither step the model nor write another output.
  */
-bool epg_jog_cycle(epg_jog_t *jog, bool enabled);
+bool epg_jog_cycle(epg_jog_t *jog, bool permitted, bool over);
 
 /**
  * Copies the present duties of the actuators and the positions of the encoders to `values`, for a stream.  They are
@@ -92,16 +94,14 @@ void epg_jog_observe(const epg_jog_t *jog);
 bool epg_jog_idle(epg_jog_t *jog);
 
 /**
- * Requests to drive actuator `index` with `duty` (-1 ... 1) for `cycles` control cycles.  Returns false if there is no
- * such actuator, or while a movement is in progress.
+ * Requests to drive actuator `index` with `duty` (-1 ... 1) for `cycles` control cycles, or on the lease
+ * (EPG_JOG_LEASED).  Returns false if there is no such actuator, or while a movement is in progress.  A program that
+ * extends the lease moves an actuator as long as a key is pressed, and the actuator stops soon after the program or its
+ * connection has failed.
  */
 bool epg_jog_start(epg_jog_t *jog, size_t index, double duty, uint32_t cycles);
 
-/**
- * Lets the movement of actuator `index` with `duty` take its requested duration from now on.  Returns false if there is
- * no such movement.  A program that renews short movements moves an actuator as long as a key is pressed, and the
- * actuator stops soon after the program or its connection has failed.
- */
-bool epg_jog_renew(epg_jog_t *jog, size_t index, double duty);
+/** Returns true while actuator `index` is moved with `duty` on the lease: extending the lease prolongs the movement. */
+bool epg_jog_is_leased(epg_jog_t *jog, size_t index, double duty);
 
 #endif

@@ -18,7 +18,8 @@ struct epg_topic;
 
 /** The time stamp of a message: the instant of the control cycle to which its values belong. */
 typedef struct epg_stamp {
-    int32_t seconds; /**< since 1970 if the clock has been set, otherwise since the board's start */
+    int32_t
+        seconds; /**< since 1970, or in simulated time; both members are 0 if the clock is not set (epg/wall_clock.h) */
     uint32_t nanoseconds;
 } epg_stamp_t;
 
@@ -46,6 +47,7 @@ typedef struct epg_message {
      * comes from the network, so it must not be trusted.  NULL: the type can only be published.
      */
     bool (*read)(const struct epg_topic *topic, const void *data, size_t size, double *values);
+    bool stamped; /**< it contains the stamp, so its topics wait for the clock after a start, for at most 1 s */
 } epg_message_t;
 
 /** Largest number of elements, or of joints, in a message. */

@@ -12,6 +12,7 @@
 #ifndef EPG_MIDDLEWARE_H
 #define EPG_MIDDLEWARE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "epg/stream.h"
@@ -36,6 +37,7 @@ typedef struct epg_middleware {
      * Returns the state of the connection as a word, such as "waiting" or "running".  The pointer changes only with it.
      */
     const char *(*state)(void);
+    bool one_part; /**< `ros2 node info` does not find the node if its namespace has several parts */
 } epg_middleware_t;
 
 #endif

@@ -41,11 +41,14 @@ typedef struct epg_parameter_change {
     double value;
 } epg_parameter_change_t;
 
-/** The result of loading stored values. */
+/** The result of loading stored values, or of storing them since. */
 typedef enum epg_parameters_stored {
-    EPG_STORED_NOTHING,   /**< no values were stored, or they are damaged */
+    EPG_STORED_NOTHING,   /**< nothing was stored */
+    EPG_STORED_DAMAGED,   /**< the store cannot be read, and no value was loaded */
     EPG_STORED_FOR_OTHER, /**< the stored values belong to another model and were refused */
-    EPG_STORED_LOADED
+    EPG_STORED_PARTLY,    /**< values that a parameter cannot have were refused (epg_store_refused()), others loaded */
+    EPG_STORED_LOADED,
+    EPG_STORED_SAVED /**< values were stored since the start */
 } epg_parameters_stored_t;
 
 /** Whether a change of a parameter has been told (epg/parameter_services.h). */

@@ -113,19 +113,27 @@ size_t epg_port_store_read(void *data, size_t size);
 
 /**
  * Stores a record of `size` bytes, which replaces the record before it.  If power fails meanwhile, the new record is
- * either complete or absent.  Returns true if the record was stored; a platform without non-volatile memory returns
- * false.
+ * either complete or absent.  Returns NULL if the record was stored, and otherwise a text that says why it was not.
  *
  * Called from the communication side, and only while the outputs are safe: it may block, and it may delay control
  * cycles.
  */
-bool epg_port_store_write(const void *data, size_t size);
+const char *epg_port_store_write(const void *data, size_t size);
 
 /**
  * Returns the serial number of the board, which no other board has: letters and digits, the same after every start
  * ("E6616407E3A51B2C").  Called from the communication side, and before the control loop starts.
  */
 const char *epg_port_serial(void);
+
+/**
+ * Returns a number of this start of the program: random, the same until the program ends, never 0.  A request that names
+ * an event of the program before a restart is recognised by it.  In simulated time it is a constant, so that all runs
+ * are equal.
+ *
+ * Called from the communication side, and before the control loop starts.  The first call may take some milliseconds.
+ */
+uint32_t epg_port_boot_id(void);
 
 #ifdef __cplusplus
 }

@@ -19,6 +19,13 @@
  *         if (sent == epg_service_reply_size(node)) { epg_service_done(node); }
  *     }
  *
+ * A request to disable does not wait for the replies before it.  The middleware looks at each request that waits:
+ *
+ *     if (epg_service_is_stop(node, i, data, size)) { epg_stop(node->target->control, EPG_STOP_SERVICE); }
+ *
+ * A request to enable that waits while something else stops the target must not act afterwards.  In a poll in which
+ * `node->services_clean` is false, the middleware marks all requests that wait; each of them is `overtaken`.
+ *
  * A middleware that receives a request in fragments can collect them in the buffer `target->service_state->request`,
  * while epg_service_idle().  It remembers the requester itself.
  *
@@ -79,10 +86,15 @@ typedef struct epg_service_state {
     bool observed;   /**< `cycles` is valid */
     bool enable;     /**< the request to enable or to disable */
     uint64_t cycles; /**< number of control cycles when the request was taken */
-    bool success;    /**< the result that the reply reports */
-    bool staged;     /**< changes of parameters have been requested, or refused as a whole */
-    size_t entries;  /**< number of elements in the reply */
-    size_t entry;    /**< the request is read on at this element, at byte `entry_position` */
+
+    /* The middleware sets these members before it passes a request that has waited; epg_service_request() clears them. */
+    bool stopped;   /**< the request is to disable, and has stopped the target while it waited */
+    bool overtaken; /**< something has stopped the target after this request has arrived */
+
+    bool success;   /**< the result that the reply reports */
+    bool staged;    /**< changes of parameters have been requested, or refused as a whole */
+    size_t entries; /**< number of elements in the reply */
+    size_t entry;   /**< the request is read on at this element, at byte `entry_position` */
     size_t entry_position;
     char message[EPG_SERVICE_MESSAGE_SIZE]; /**< its reason, or its number */
 } epg_service_state_t;
@@ -107,6 +119,9 @@ size_t epg_service_topic(const epg_node_t *node, size_t service, bool reply, cha
 
 /** Returns true if no request is in work. */
 bool epg_service_idle(const epg_node_t *node);
+
+/** Returns true if a whole request for service `service` is one to disable the target. */
+bool epg_service_is_stop(const epg_node_t *node, size_t service, const void *request, size_t size);
 
 /** Takes a whole request for service `service`.  `request` may be the buffer of the state itself. */
 epg_service_result_t epg_service_request(epg_node_t *node, size_t service, const void *request, size_t size,

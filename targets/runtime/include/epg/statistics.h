@@ -35,7 +35,7 @@ typedef struct epg_statistics {
     uint32_t computation_max;   /**< duration of the longest cycle, the same */
     uint64_t computation_total; /**< sum of the durations of all cycles; the mean is this divided by `cycles` */
     uint32_t outputs_late;      /**< cycles that wrote their outputs after the output delay */
-    uint32_t clamped;           /**< values limited by a conversion, `max_duty` or the range of an actuator */
+    uint32_t clamped;           /**< values limited by a conversion, `max_duty`, an actuator's or a member's range */
     uint32_t setpoints_dropped; /**< setpoints that were refused because they were NaN or infinite */
     uint32_t setpoint_timeouts; /**< how often a setpoint became older than its timeout */
     uint32_t faults;            /**< how often a fault was latched */

@@ -32,17 +32,23 @@ typedef struct epg_store {
 } epg_store_t;
 
 /**
- * Loads the stored names, and the parameters if they belong to this model.  Parameters are loaded completely or not at
- * all; those that were not stored have their generated values.  Must be called before the control loop and the
- * communication start.
+ * Loads the stored names, and the parameters if they belong to this model.  A parameter that was not stored, or that
+ * cannot have the stored value because its limits are new, has its generated value.  Must be called before the control
+ * loop and the communication start.
  */
 void epg_store_load(epg_store_t *store);
 
 /**
- * Stores the names, and all parameters that differ from their generated values.  Returns true if that was possible;
+ * Returns the name of the refused parameter `index`, counted from 0, of the result EPG_STORED_PARTLY; NULL: there are no
+ * more.  They are known until epg_store_save().
+ */
+const char *epg_store_refused(const epg_store_t *store, size_t index);
+
+/**
+ * Stores the names, and all parameters that differ from their generated values.  Returns NULL, or why that failed;
  * `*values` is the number of these parameters.  May take as long as epg_port_store_write(), and must therefore be
  * called only while the outputs are safe.  Communication side.
  */
-bool epg_store_save(epg_store_t *store, size_t *values);
+const char *epg_store_save(epg_store_t *store, size_t *values);
 
 #endif

@@ -129,6 +129,18 @@ static inline const char *epg_target_component(const epg_target_t *target, uint1
  */
 const char *epg_target_fault(const epg_target_t *target, epg_fault_t fault);
 
+/** Returns the word for the origin of a stop in messages: "line", "topic", ... */
+const char *epg_stop_source_name(epg_stop_source_t source);
+
+/** Returns the name of setpoint `index` for the user; "" for an index that is not one. */
+const char *epg_target_setpoint(const epg_target_t *target, size_t index);
+
+/**
+ * Returns the name of a setpoint that explains a stall: its newest received value is at a limit, so that the axis can be
+ * pressed against an end stop.  Returns "" if there is none, and for every other fault.  Communication side.
+ */
+const char *epg_target_stalling_setpoint(const epg_target_t *target, const epg_status_t *status);
+
 /** Must be called by a middleware before it sends publication `index`.  Communication side. */
 static inline void epg_target_publishing(const epg_target_t *target, size_t index)
 {

@@ -18,7 +18,7 @@ typedef struct epg_transport {
     /**
      * Starts the transport.  Returns false if that is impossible.  `title` names the purpose of the stream for the user
      * at the other end ("EPG console"); it stays valid.  Called before the control loop starts, and again after a
-     * target was stopped.
+     * target was stopped or another transport did not start.  A transport that has started stays open meanwhile.
      */
     bool (*start)(void *context, const char *title);
     void (*poll)(void *context);  /**< called at least once per millisecond, before the middleware; may be NULL */

@@ -5,7 +5,6 @@
  */
 #include "../sides.h"
 #include "epg/control.h"
-#include "epg/finite.h"
 
 bool epg_control_receive(epg_control_t *control, size_t index, double value, uint64_t received_ns, bool publish)
 {
@@ -13,8 +12,8 @@ bool epg_control_receive(epg_control_t *control, size_t index, double value, uin
     if (application == NULL || index >= application->setpoint_count) {
         return false;
     }
-    const bool finite = epg_is_finite(value);
-    if (finite) {
+    const bool accepted = epg_setpoint_accepts(&application->setpoints[index], value);
+    if (accepted) {
         epg_setpoint_sample_t *sample = &application->received[index];
         sample->value = value;
         sample->received_ns = received_ns;
@@ -22,6 +21,7 @@ bool epg_control_receive(epg_control_t *control, size_t index, double value, uin
     } else {
         /* The Cortex-M0+ has no atomic read-modify-write.  None is needed: only this side writes the word. */
         atomic_store(&control->dropped, atomic_load(&control->dropped) + 1U);
+        control->refused = (uint32_t)index + 1U;
     }
     if (publish) {
         epg_exchange_write(application->setpoint_exchange, application->received);
@@ -29,7 +29,7 @@ bool epg_control_receive(epg_control_t *control, size_t index, double value, uin
     if (application->arrived != NULL) {
         application->arrived(index);
     }
-    return finite;
+    return accepted;
 }
 
 bool epg_control_monitor(epg_control_t *control, double *values)
@@ -48,23 +48,6 @@ bool epg_control_observe(epg_control_t *control, epg_status_t *status)
 {
     atomic_store(&control->observed, true);
     return epg_exchange_read(&control->observer_exchange, status);
-}
-
-static void send_request(epg_control_t *control, unsigned int bits)
-{
-    const unsigned int sequence = (atomic_load(&control->request) | EPG_REQUEST_BITS) + 1U;
-    atomic_store(&control->request, sequence | bits);
-}
-
-void epg_control_request(epg_control_t *control, bool enable)
-{
-    send_request(control, enable ? EPG_REQUEST_ENABLE : 0U);
-}
-
-void epg_control_request_leased(epg_control_t *control, uint64_t until_ns)
-{
-    epg_control_extend(control, until_ns);
-    send_request(control, EPG_REQUEST_ENABLE | EPG_REQUEST_LEASED);
 }
 
 void epg_control_extend(epg_control_t *control, uint64_t until_ns)

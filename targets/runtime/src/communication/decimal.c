@@ -4,7 +4,9 @@
  * Conversions between doubles and decimal text, with intermediate numbers of at least 161 bits.
  *
  * 17 decimal digits identify every double (IEEE 754-2019, 5.12.2).  For most numbers that people write, 15 or 16 digits
- * do.  The code therefore tries 15, 16 and 17 digits, and takes the first text that reads back as the same double.
+ * do.  The code therefore takes the first of 15, 16 and 17 digits whose text reads back as the same double.  A text does
+ * so if it is nearer to the double than half the distance to the next one.  The first 17 digits and five bits more
+ * nearly always tell; otherwise, the code reads the text back.
  *
  * Scaling by a power of ten takes at most 92 steps.  Each step cuts off less than one part in 2^160.  A text of 17
  * digits is nearer to its double than half the distance to the next one; the margin is a tenth of one part in 2^54.
@@ -24,7 +26,8 @@ enum {
     LARGEST_POWER = 310, /* above this decimal exponent, every number is too large for a double */
     LEAST_POWER = -365,  /* below it, EPG_DECIMAL_DIGITS digits give less than half of the smallest double */
     EXACT_DIGITS = 15,   /* a decimal number with so many digits is unchanged after conversion to double and back */
-    MOST_DIGITS = 17     /* a double is unchanged after conversion to so many digits and back */
+    MOST_DIGITS = 17,    /* a double is unchanged after conversion to so many digits and back */
+    FINE = 5             /* bits after the point of 17 digits; 17 digits and these bits are below 2^62 */
 };
 
 #define SIGN ((uint64_t)1 << 63)
@@ -84,8 +87,11 @@ static void fill(wide_t *value)
 
 static wide_t wide(uint64_t value, int exponent)
 {
-    wide_t result = {{(uint32_t)(value & 0xFFFFFFFFU), (uint32_t)(value >> 32)}, exponent};
-    fill(&result);
+    const uint32_t high = (uint32_t)(value >> 32);
+    const uint32_t low = (uint32_t)(value & 0xFFFFFFFFU);
+    wide_t result = {{0}, exponent - 32 * (high != 0 ? WORDS - 2 : WORDS - 1)};
+    result.words[WORDS - 1] = high != 0 ? high : low;
+    result.words[WORDS - 2] = high != 0 ? low : 0U;
     return result;
 }
 
@@ -199,16 +205,17 @@ static int power_of_ten(int exponent)
     return exponent >= 0 ? exponent * 1233 / 4096 : -((-exponent * 1234 + 4095) / 4096);
 }
 
-/** Returns `count` digits of significand * 2^exponent as a whole number; the value is this number * 10^*power. */
-static uint64_t decimal(uint64_t significand, int exponent, int count, int *power)
+/**
+ * Returns `count` digits of significand * 2^exponent as a whole number; the value is this number * 10^*power.  `fine`,
+ * if it is not NULL, gets the same number with FINE bits after its point.
+ */
+static uint64_t decimal(uint64_t significand, int exponent, int count, int *power, uint64_t *fine)
 {
-    uint64_t limit = 1;
-    for (int i = 0; i < count; i++) {
-        limit *= 10U;
-    }
-    int bits = 0;
-    for (uint64_t rest = significand; rest != 0; rest >>= 1) {
-        bits++;
+    const int low = count < NINE_DIGITS ? count : NINE_DIGITS;
+    const uint64_t limit = (uint64_t)power_of(low) * power_of(count - low);
+    int bits = FRACTION + 1;
+    while (significand >> (bits - 1) == 0) {
+        bits--;
     }
     *power = power_of_ten(exponent + bits - 1) - count + 1;
     for (;; ++*power) { /* the first estimate may be too small */
@@ -216,9 +223,33 @@ static uint64_t decimal(uint64_t significand, int exponent, int count, int *powe
         scale(&value, -*power);
         const uint64_t result = rounded(&value, 0);
         if (result < limit) {
+            if (fine != NULL) {
+                *fine = rounded(&value, -FINE);
+            }
             return result;
         }
     }
+}
+
+/** Returns the bits of the double nearest to digits * 10^power. */
+static uint64_t double_of(uint64_t digits, int power)
+{
+    wide_t value = wide(digits, 0);
+    scale(&value, power);
+    return nearest(&value);
+}
+
+/**
+ * Tells whether a double reads back from fewer digits than 17: a positive number if so, a negative one if not, 0 if only
+ * a trial tells.  `fine` is 17 digits with FINE bits after their point; `unit` cuts off the last ones (10 or 100).
+ */
+static int reads_back(uint64_t fine, uint64_t significand, unsigned int unit)
+{
+    const uint64_t half = fine / (2U * significand); /* half the distance to the next double, at most 1 too small */
+    const unsigned int whole = unit << FINE;
+    const unsigned int above = (unsigned int)(fine % whole);
+    const unsigned int off = above < whole - above ? above : whole - above; /* distance to the shorter number, +-1 */
+    return off + 1U < half ? 1 : off > half + 2U ? -1 : 0;
 }
 
 /**
@@ -231,17 +262,23 @@ static uint64_t shortest(uint64_t bits, int *power)
     const int biased = (int)(bits >> FRACTION);
     const uint64_t significand = biased == 0 ? fraction : fraction | (uint64_t)1 << FRACTION;
     const int exponent = LEAST + (biased == 0 ? 0 : biased - 1);
-    uint64_t result = 0;
+    uint64_t fine;
+    const uint64_t longest = decimal(significand, exponent, MOST_DIGITS, power, &fine);
+    /* A power of two has a nearer neighbour below it than above it. */
+    const bool same_distance = biased != 0 && fraction != 0;
     /* The smallest doubles have fewer bits than the others; one digit can be sufficient. */
-    for (int count = biased == 0 ? 1 : EXACT_DIGITS; count <= MOST_DIGITS; count++) {
-        result = decimal(significand, exponent, count, power);
-        wide_t back = wide(result, 0);
-        scale(&back, *power);
-        if (nearest(&back) == bits) {
-            break;
+    for (int count = biased == 0 ? 1 : EXACT_DIGITS; count < MOST_DIGITS; count++) {
+        const int known = same_distance ? reads_back(fine, significand, power_of(MOST_DIGITS - count)) : 0;
+        if (known >= 0) {
+            int shorter;
+            const uint64_t result = decimal(significand, exponent, count, &shorter, NULL);
+            if (known > 0 || double_of(result, shorter) == bits) {
+                *power = shorter;
+                return result;
+            }
         }
     }
-    return result;
+    return longest;
 }
 
 /** Writes `digits` with their point, or with an exponent below 1e-4 and from 1e17 on, as C's "%.17g" does. */

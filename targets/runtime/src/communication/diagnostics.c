@@ -19,12 +19,41 @@ enum { LEVEL_OK, LEVEL_WARN, LEVEL_ERROR };
 /** How long a warning stays after its counter has grown: several periods of the diagnostics. */
 static const uint64_t WARNING_NS = 5000000000;
 
-enum { LONGEST_MESSAGE = 88 }; /* room for all warnings */
+enum {
+    LONGEST_MESSAGE = 112, /* room for all warnings */
+    MS = 1000000           /* ns */
+};
+
+enum { LONGEST_NAME = 63 }; /* bytes of the name of a setpoint */
 
 static void write_pair(epg_cdr_writer_t *writer, const char *key, const char *value)
 {
     epg_cdr_write_string(writer, key);
     epg_cdr_write_string(writer, value);
+}
+
+/** Writes the name of the setpoint that was refused last, or its beginning if it is long. */
+static void write_refused(epg_cdr_writer_t *writer, const epg_target_t *target)
+{
+    const uint32_t refused = target->control->refused;
+    char name[LONGEST_NAME + 1] = "";
+    if (refused != 0) {
+        const char *setpoint = epg_target_setpoint(target, refused - 1U);
+        const size_t length = strlen(setpoint);
+        memcpy(name, setpoint, length < LONGEST_NAME ? length : LONGEST_NAME);
+    }
+    write_pair(writer, "setpoint_refused", name);
+}
+
+/** Writes who has stopped the target last, and how long ago; no time if nothing has stopped it since the start. */
+static void write_stop(epg_cdr_writer_t *writer, const epg_status_t *status)
+{
+    char text[EPG_DECIMAL_SIZE + 1] = "";
+    if ((uint32_t)status->stop_number != 0U) {
+        text[epg_decimal_write_integer(text, (int64_t)((status->time_ns - status->stop_ns) / MS))] = '\0';
+    }
+    write_pair(writer, "stopped_by", epg_stop_source_name(status->stop_source));
+    write_pair(writer, "stopped_ms_ago", text);
 }
 
 static void write_pairs(epg_cdr_writer_t *writer, const epg_node_t *node, const epg_status_t *status)
@@ -49,16 +78,26 @@ static void write_pairs(epg_cdr_writer_t *writer, const epg_node_t *node, const 
         {"reconnects", counted->reconnects},
         {"unsent", node->unsent},
         {"malformed", node->malformed},
+        {"stops", (uint32_t)status->stop_number},
+        {"enable_ignored", node->edge.ignored},
+        {"clock_uncertainty_ns", node->clock.uncertainty_ns},
+        {"clock_steps", node->clock.steps},
+        {"clock_step_ms", (uint64_t)(node->clock.step_ns / MS)},
     };
     const size_t count = sizeof numbers / sizeof numbers[0];
     char text[EPG_DECIMAL_SIZE + 1];
-    epg_cdr_write_u32(writer, (uint32_t)count + 4U);
+    epg_cdr_write_u32(writer, (uint32_t)count + 10U);
     write_pair(writer, "fault", epg_target_fault(node->target, status->fault));
     write_pair(writer, "component", epg_target_component(node->target, status->fault_component));
+    write_stop(writer, status);
+    write_pair(writer, "enable_advice", node->edge.advice != NULL ? node->edge.advice : "");
+    write_pair(writer, "client_advice", node->client_advice != NULL ? node->client_advice : "");
     for (size_t i = 0; i < count; i++) {
         text[epg_decimal_write_integer(text, (int64_t)numbers[i].value)] = '\0';
         write_pair(writer, numbers[i].key, text);
     }
+    write_refused(writer, node->target);
+    write_pair(writer, "clock", node->clock.set ? "set" : "not set");
     write_pair(writer, "epg", node->target->version);
     write_pair(writer, "firmware", node->target->hash);
 }
@@ -71,8 +110,9 @@ static bool update_warnings(epg_node_t *node, const epg_status_t *status)
         [EPG_NODE_TIMEOUTS] = status->statistics.setpoint_timeouts,
         [EPG_NODE_REFUSED] = status->statistics.setpoints_dropped,
         [EPG_NODE_MALFORMED] = node->malformed,
+        [EPG_NODE_STEPS] = node->clock.steps,
     };
-    bool any = false;
+    bool any = !node->clock.set;
     for (size_t i = 0; i < EPG_NODE_WARNINGS; i++) {
         epg_node_warning_t *warning = &node->warnings[i];
         if (warning->count != counts[i]) {
@@ -92,19 +132,29 @@ static char *append(char *end, const char *text)
     return end + length;
 }
 
+/**
+ * Writes namespace and name of the node, such as "robot_7/JIWY_node": monitors take statuses of one name for those of
+ * one robot.
+ */
+static void write_name(epg_cdr_writer_t *writer, const epg_node_t *node)
+{
+    char name[EPG_NODE_SPACE_SIZE + EPG_NODE_NAME_SIZE];
+    (void)epg_node_name(node, "~", false, name, sizeof name);
+    epg_cdr_write_string(writer, name + 1); /* without the leading slash */
+}
+
 /** Writes the level, the name and the message, such as "enabled; setpoint timeouts; malformed messages". */
 static void write_summary(epg_cdr_writer_t *writer, epg_node_t *node, const epg_status_t *status)
 {
     static const char *const names[EPG_NODE_WARNINGS] = {
-        [EPG_NODE_OVERRUNS] = "; overruns",
-        [EPG_NODE_TIMEOUTS] = "; setpoint timeouts",
-        [EPG_NODE_REFUSED] = "; refused setpoints",
-        [EPG_NODE_MALFORMED] = "; malformed messages",
+        [EPG_NODE_OVERRUNS] = "; overruns",         [EPG_NODE_TIMEOUTS] = "; setpoint timeouts",
+        [EPG_NODE_REFUSED] = "; refused setpoints", [EPG_NODE_MALFORMED] = "; malformed messages",
+        [EPG_NODE_STEPS] = "; step of the clock",
     };
     const bool warning = update_warnings(node, status) || !status->enabled;
     const bool fault = status->fault != EPG_FAULT_NONE;
     epg_cdr_write_u8(writer, fault ? LEVEL_ERROR : warning ? LEVEL_WARN : LEVEL_OK);
-    epg_cdr_write_string(writer, node->name);
+    write_name(writer, node);
     if (fault || !status->enabled) {
         epg_cdr_write_string(writer, fault ? epg_target_fault(node->target, status->fault) : "disabled");
         return;
@@ -115,6 +165,9 @@ static void write_summary(epg_cdr_writer_t *writer, epg_node_t *node, const epg_
         if (node->warnings[i].until_ns > status->time_ns) {
             end = append(end, names[i]);
         }
+    }
+    if (!node->clock.set) {
+        (void)append(end, "; clock not set");
     }
     epg_cdr_write_string(writer, text);
 }
@@ -141,4 +194,5 @@ const epg_message_t epg_message_diagnostic_array = {
     .hash = EPG_TYPE_HASH("RIHS01_5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e"),
     .write = NULL,
     .read = NULL,
+    .stamped = true,
 };

@@ -18,15 +18,13 @@ bool epg_jog_start(epg_jog_t *jog, size_t index, double duty, uint32_t cycles)
     jog->actuator = index;
     jog->duty = duty;
     jog->cycles = cycles;
+    jog->leased = cycles == EPG_JOG_LEASED;
     epg_handover_give(&jog->handover);
     return true;
 }
 
-bool epg_jog_renew(epg_jog_t *jog, size_t index, double duty)
+bool epg_jog_is_leased(epg_jog_t *jog, size_t index, double duty)
 {
-    if (epg_handover_here(&jog->handover) || index != jog->actuator || duty < jog->duty || duty > jog->duty) {
-        return false;
-    }
-    atomic_store(&jog->renewals, atomic_load(&jog->renewals) + 1U);
-    return true;
+    return !epg_handover_here(&jog->handover) && jog->leased && index == jog->actuator && duty >= jog->duty &&
+           duty <= jog->duty;
 }

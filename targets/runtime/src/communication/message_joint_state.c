@@ -112,4 +112,5 @@ const epg_message_t epg_message_joint_state = {
     .hash = EPG_TYPE_HASH("RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e"),
     .write = write_joint_state,
     .read = read_joint_state,
+    .stamped = true,
 };

@@ -93,4 +93,5 @@ const epg_message_t epg_message_parameter_event = {
     .type = "rcl_interfaces::msg::dds_::ParameterEvent_",
     .hash = EPG_TYPE_HASH("RIHS01_043e627780fcad87a22d225bc2a037361dba713fca6a6b9f4b869a5aa0393204"),
     .write = write_event,
+    .stamped = true,
 };

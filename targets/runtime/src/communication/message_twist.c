@@ -71,4 +71,5 @@ const epg_message_t epg_message_twist_stamped = {
     .hash = EPG_TYPE_HASH("RIHS01_5f0fcd4f81d5d06ad9b4c4c63e3ea51b82d6ae4d0558f1d475229b1121db6f64"),
     .write = write_stamped,
     .read = read_stamped,
+    .stamped = true,
 };

@@ -8,13 +8,18 @@
 #include <string.h>
 
 #include "epg/diagnostics.h"
-#include "epg/finite.h"
 #include "epg/names.h"
 #include "epg/port.h"
 
 #define SECOND_NS 1000000000
 /** Writing the diagnostics takes as long as all values together.  They wait this long for a call without values. */
 #define DIAGNOSTICS_WAIT_NS UINT64_C(5000000)
+/** A message of an unnamed sender that arrives so soon after a connection may have waited in an agent. */
+#define STALE_NS SECOND_NS
+/** A `true` that follows another one within this time may come from a node that repeats it. */
+#define REPEATED_NS SECOND_NS
+/** Longest time for which topics with a stamp wait until the clock is set. */
+#define CLOCK_WAIT_NS SECOND_NS
 
 /** Remembers that `values` are those of a cycle, and its time. */
 static void accept_values(epg_node_t *node)
@@ -44,7 +49,7 @@ static epg_stamp_t stamp_at(uint64_t time_ns)
 
 static epg_stamp_t stamp_of(const epg_node_t *node)
 {
-    return stamp_at(node->time_ns + (uint64_t)node->epoch_ns);
+    return stamp_at(epg_clock_stamp_ns(&node->clock, node->time_ns));
 }
 
 /**
@@ -65,6 +70,10 @@ static bool changed(const epg_node_t *node, const epg_topic_t *topic, const epg_
 static bool is_due(epg_node_t *node, const epg_topic_t *topic, epg_node_publication_t *state, uint64_t now_ns)
 {
     if (topic->role == EPG_TOPIC_ECHO || (topic->role == EPG_TOPIC_VALUES && !node->valid)) {
+        return false;
+    }
+    if (node->waits && topic->message->stamped) {
+        state->due_ns = topic->trigger == EPG_TOPIC_PERIOD ? now_ns : state->due_ns;
         return false;
     }
     if (topic->trigger == EPG_TOPIC_CHANGE) {
@@ -118,10 +127,12 @@ void epg_node_start(epg_node_t *node, const epg_target_t *target,
     node->send = send;
     node->valid = false;
     node->time_ns = 0;
-    node->epoch_ns = 0;
+    epg_clock_start(&node->clock, target->simulated_time);
     node->unsent = 0;
     node->lost_seen = 0;
     node->malformed = 0;
+    node->client_advice = NULL;
+    node->edge = (epg_node_edge_t){0};
     for (size_t i = 0; i < EPG_NODE_WARNINGS; i++) {
         node->warnings[i] = (epg_node_warning_t){0};
     }
@@ -132,12 +143,20 @@ void epg_node_start(epg_node_t *node, const epg_target_t *target,
     }
 }
 
+void epg_node_delayed(epg_node_t *node, uint64_t now_ns)
+{
+    node->connected_ns = now_ns;
+    node->edge.low = false;
+}
+
 void epg_node_connected(epg_node_t *node, uint64_t now_ns)
 {
     if (history_of(node) != NULL) {
         epg_history_drop_all(history_of(node));
         node->lost_seen = (uint32_t)atomic_load(&history_of(node)->lost);
     }
+    epg_node_delayed(node, now_ns);
+    node->waits = !node->clock.set;
     take_values(node);
     for (size_t i = 0; i < node->target->publication_count; i++) {
         const bool cycles = node->target->publications[i].trigger == EPG_TOPIC_CYCLES;
@@ -204,9 +223,10 @@ static bool publish_history(epg_node_t *node, epg_history_t *history, uint64_t n
     return found;
 }
 
-void epg_node_poll(epg_node_t *node, uint64_t now_ns)
+bool epg_node_poll(epg_node_t *node, uint64_t now_ns)
 {
     epg_history_t *history = history_of(node);
+    node->waits = node->waits && now_ns < node->connected_ns + CLOCK_WAIT_NS;
     bool busy = history != NULL && publish_history(node, history, now_ns);
     /* All publications that are due now get values of the same cycle. */
     take_values(node);
@@ -216,17 +236,21 @@ void epg_node_poll(epg_node_t *node, uint64_t now_ns)
             busy = publish_if_due(node, i, now_ns) || busy;
         }
     }
+    /* Only now, so that the call after an answer that has set the clock does not send all that has waited, too. */
+    node->waits = node->waits && !node->clock.set;
+    return busy;
 }
 
 static void receive_values(epg_node_t *node, const epg_topic_t *topic, uint64_t now_ns)
 {
+    const epg_setpoint_t *setpoints = node->target->application->setpoints;
     size_t refused = topic->count;
     for (size_t i = 0; i < topic->count; i++) {
-        if (!epg_is_finite(node->received[i])) {
+        if (!epg_setpoint_accepts(&setpoints[topic->index + i], node->received[i])) {
             refused = i;
         }
     }
-    if (refused < topic->count) { /* one value that is not finite drops the whole message, which counts once */
+    if (refused < topic->count) { /* one refused value drops the whole message, which counts once */
         (void)epg_control_receive(node->target->control, topic->index + refused, node->received[refused], now_ns,
                                   false);
         return;
@@ -237,7 +261,100 @@ static void receive_values(epg_node_t *node, const epg_topic_t *topic, uint64_t 
     }
 }
 
-void epg_node_receive(epg_node_t *node, size_t subscription, const void *data, size_t size, uint64_t now_ns)
+void epg_node_listen(epg_node_t *node)
+{
+    node->services_clean = epg_gate_poll(node->target->control, EPG_GATE_SERVICE);
+    node->topics_clean = epg_gate_poll(node->target->control, EPG_GATE_TOPIC);
+}
+
+/** Returns the place of a publisher among those whose own last message was `true`; EPG_NODE_PUBLISHERS: it is not there. */
+static size_t place_of(const epg_node_edge_t *edge, uint32_t publisher)
+{
+    size_t place = 0;
+    while (place < EPG_NODE_PUBLISHERS && (publisher == 0 || edge->high[place] != publisher)) {
+        place++;
+    }
+    return place;
+}
+
+/** Remembers that the newest message of a publisher is `true`.  Of too many, the one that was silent longest is forgotten. */
+static void add_high(epg_node_edge_t *edge, uint32_t publisher)
+{
+    size_t place = place_of(edge, publisher);
+    for (place = place < EPG_NODE_PUBLISHERS ? place : EPG_NODE_PUBLISHERS - 1U; place > 0; place--) {
+        edge->high[place] = edge->high[place - 1U];
+    }
+    edge->high[0] = publisher;
+}
+
+static void remove_high(epg_node_edge_t *edge, uint32_t publisher)
+{
+    const size_t place = place_of(edge, publisher);
+    if (place < EPG_NODE_PUBLISHERS) {
+        edge->high[place] = 0;
+    }
+}
+
+static void receive_false(epg_node_t *node, uint32_t publisher, uint64_t now_ns)
+{
+    epg_control_t *control = node->target->control;
+    epg_stop(control, EPG_STOP_TOPIC);
+    node->edge.low = true;
+    node->edge.early = publisher == 0 && now_ns - node->connected_ns < STALE_NS;
+    remove_high(&node->edge, publisher);
+    epg_gate_open(control, EPG_GATE_EDGE);
+    /* In this order: another stop since this message arrived has closed the one gate or closes the other. */
+    if (!node->topics_clean || !epg_gate_is_open(control, EPG_GATE_TOPIC)) {
+        epg_gate_close(control, EPG_GATE_EDGE);
+    }
+}
+
+/** Returns the reason why a `true` does not enable, and the remedy; NULL: it enables. */
+static const char *find_advice(const epg_node_t *node, uint32_t publisher, bool low, bool repeated)
+{
+    const epg_node_edge_t *edge = &node->edge;
+    if (!low) {
+        return "the message before it was not false: send false, then true";
+    }
+    if (edge->early) {
+        return "the false came within a second after the connection: send false, then true";
+    }
+    if (place_of(edge, publisher) < EPG_NODE_PUBLISHERS) {
+        return "its own node sent a true before: let it send false, then true";
+    }
+    if (repeated) {
+        return "it followed a true within a second: do not repeat true, send false, then true";
+    }
+    if (!node->topics_clean || !epg_gate_is_open(node->target->control, EPG_GATE_EDGE)) {
+        return "another stop came after the false: send false, then true";
+    }
+    return NULL;
+}
+
+static void receive_true(epg_node_t *node, uint32_t publisher, uint64_t now_ns)
+{
+    epg_control_t *control = node->target->control;
+    epg_node_edge_t *edge = &node->edge;
+    const bool low = edge->low;
+    const bool repeated = edge->risen && now_ns - edge->risen_ns < REPEATED_NS;
+    edge->low = false;
+    edge->risen = true;
+    edge->risen_ns = now_ns;
+    const char *advice = find_advice(node, publisher, low, repeated);
+    add_high(edge, publisher);
+    epg_status_t status;
+    if (advice == NULL) {
+        epg_gate_enable(control, EPG_GATE_EDGE, EPG_ENABLE_ANY);
+    } else if (!epg_control_observe(control, &status) || !status.enabled) {
+        edge->ignored++;
+    } else {
+        return; /* the target is enabled: nothing was asked for */
+    }
+    edge->advice = advice;
+}
+
+void epg_node_receive(epg_node_t *node, size_t subscription, const void *data, size_t size, uint32_t publisher,
+                      uint64_t now_ns)
 {
     if (subscription >= node->target->subscription_count) {
         return;
@@ -250,16 +367,13 @@ void epg_node_receive(epg_node_t *node, size_t subscription, const void *data, s
     if (!topic->message->read(topic, data, size, node->received)) {
         node->malformed++;
     } else if (topic->role == EPG_TOPIC_ENABLE) {
-        epg_control_request(node->target->control, node->received[0] > 0.5);
+        if (node->received[0] > 0.5) {
+            receive_true(node, publisher, now_ns);
+        } else {
+            receive_false(node, publisher, now_ns);
+        }
     } else {
         receive_values(node, topic, now_ns);
-    }
-}
-
-void epg_node_set_time(epg_node_t *node, uint64_t epoch_ns, uint64_t now_ns)
-{
-    if (!node->target->simulated_time) {
-        node->epoch_ns = (int64_t)(epoch_ns - now_ns);
     }
 }
 
@@ -305,7 +419,8 @@ size_t epg_node_topic(const epg_node_t *node, const epg_topic_t *topic, char *na
 
 uint32_t epg_node_key(const epg_node_t *node)
 {
-    const char *const parts[] = {epg_port_serial(), node->name_space, node->name};
+    const char *const parts[] = {node->program != NULL ? node->program : "", epg_port_serial(), node->name_space,
+                                 node->name};
     uint32_t hash = 2166136261U;
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
         for (const char *text = parts[i]; *text != '\0'; text++) {

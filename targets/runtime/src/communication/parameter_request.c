@@ -21,9 +21,10 @@ static void read_value(epg_cdr_reader_t *reader, epg_parameter_entry_t *entry)
 {
     size_t first;
     entry->type = epg_cdr_read_u8(reader);
-    (void)epg_cdr_read_u8(reader);                     /* bool_value */
-    (void)epg_cdr_read_bits(reader, sizeof(uint64_t)); /* integer_value */
-    entry->value = epg_cdr_read_f64(reader);
+    (void)epg_cdr_read_u8(reader); /* bool_value */
+    const int64_t integer = (int64_t)epg_cdr_read_bits(reader, sizeof integer);
+    const double number = epg_cdr_read_f64(reader);
+    entry->value = entry->type == EPG_PARAMETER_TYPE_INTEGER ? (double)integer : number;
     (void)epg_cdr_read_string(reader);
     (void)epg_cdr_read_sequence(reader, sizeof(uint8_t), &first);  /* byte_array_value */
     (void)epg_cdr_read_sequence(reader, sizeof(uint8_t), &first);  /* bool_array_value */

@@ -10,14 +10,14 @@
 #include "reply.h"
 
 /** The types of parameters: rcl_interfaces/msg/ParameterType. */
-enum { EPG_PARAMETER_TYPE_DOUBLE = 3, EPG_PARAMETER_TYPES = 10 };
+enum { EPG_PARAMETER_TYPE_INTEGER = 2, EPG_PARAMETER_TYPE_DOUBLE = 3, EPG_PARAMETER_TYPES = 10 };
 
 /** An element of a request: a name, or a name with a value.  `name` points into the request. */
 typedef struct epg_parameter_entry {
     const char *name;
     size_t index; /**< index of the parameter; SIZE_MAX: there is none with this name */
     uint8_t type;
-    double value; /**< only valid if `type` is EPG_PARAMETER_TYPE_DOUBLE */
+    double value; /**< only valid if `type` is that of a double or an integer */
 } epg_parameter_entry_t;
 
 /** Returns the parameters of the node's target. */

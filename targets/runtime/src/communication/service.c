@@ -39,6 +39,12 @@ bool epg_service_idle(const epg_node_t *node)
     return state_of(node)->service == NULL;
 }
 
+bool epg_service_is_stop(const epg_node_t *node, size_t service, const void *request, size_t size)
+{
+    const unsigned char *data = request;
+    return node->target->services[service].kind == &epg_service_enable && size > 0 && data[0] == 0;
+}
+
 epg_service_result_t epg_service_request(epg_node_t *node, size_t service, const void *request, size_t size,
                                          uint64_t now_ns)
 {
@@ -58,7 +64,10 @@ epg_service_result_t epg_service_request(epg_node_t *node, size_t service, const
     state->taken_ns = now_ns;
     state->ready = false;
     epg_cdr_reader_t reader = {.data = state->request, .size = size};
-    if (!asked->kind->take(node, &reader)) {
+    const bool taken = asked->kind->take(node, &reader);
+    state->stopped = false;
+    state->overtaken = false;
+    if (!taken) {
         node->malformed++;
         return EPG_SERVICE_MALFORMED;
     }

@@ -14,7 +14,7 @@ static refusal_t judge(const epg_node_t *node, const epg_parameter_entry_t *entr
     if (entry->index == SIZE_MAX) {
         return UNKNOWN;
     }
-    if (entry->type != EPG_PARAMETER_TYPE_DOUBLE) {
+    if (entry->type != EPG_PARAMETER_TYPE_DOUBLE && entry->type != EPG_PARAMETER_TYPE_INTEGER) {
         return WRONG_TYPE;
     }
     if (!epg_is_finite(entry->value)) {

@@ -3,9 +3,6 @@
  * @file
  * The services that change the state of a target: SetBool to enable or disable it, Trigger to clear a
  * fault and to store parameters.
- *
- * A control cycle that was under way when a request was made may end without it.  The cycle after that has seen the
- * request, so the result is known after two cycles.
  */
 #include <string.h>
 
@@ -34,8 +31,8 @@ static void begin(epg_node_t *node)
     state->cycles = state->observed ? status.statistics.cycles : 0;
 }
 
-/** Copies the newest status.  Returns true if at least two cycles have begun since begin(). */
-static bool cycled(const epg_node_t *node, epg_status_t *status)
+/** Copies the newest status.  Returns true if at least `cycles` cycles have ended since begin(). */
+static bool cycled(const epg_node_t *node, epg_status_t *status, uint32_t cycles)
 {
     epg_service_state_t *state = node->target->service_state;
     if (!epg_control_observe(node->target->control, status)) {
@@ -45,7 +42,7 @@ static bool cycled(const epg_node_t *node, epg_status_t *status)
         state->observed = true;
         state->cycles = status->statistics.cycles;
     }
-    return status->statistics.cycles - state->cycles >= 2U;
+    return status->statistics.cycles - state->cycles >= cycles;
 }
 
 /** Adds `text` to the message of the reply, as far as it fits. */
@@ -58,6 +55,23 @@ static void add(epg_service_state_t *state, const char *text)
     state->message[used + length] = '\0';
 }
 
+/** Adds the fault that is latched, if there is one. */
+static void add_fault(const epg_node_t *node, const epg_status_t *status)
+{
+    epg_service_state_t *state = node->target->service_state;
+    const char *component = epg_target_component(node->target, status->fault_component);
+    if (status->fault == EPG_FAULT_NONE) {
+        return;
+    }
+    add(state, ": fault '");
+    add(state, epg_target_fault(node->target, status->fault));
+    add(state, "'");
+    if (component[0] != '\0') {
+        add(state, " of ");
+        add(state, component);
+    }
+}
+
 /** Sets the result.  Unless it is a success, names the fault that is latched, if there is one. */
 static void conclude(const epg_node_t *node, bool success, const char *message, const epg_status_t *status)
 {
@@ -65,15 +79,8 @@ static void conclude(const epg_node_t *node, bool success, const char *message, 
     state->success = success;
     state->message[0] = '\0';
     add(state, message);
-    if (!success && status != NULL && status->fault != EPG_FAULT_NONE) {
-        const char *component = epg_target_component(node->target, status->fault_component);
-        add(state, ": fault '");
-        add(state, epg_target_fault(node->target, status->fault));
-        add(state, "'");
-        if (component[0] != '\0') {
-            add(state, " of ");
-            add(state, component);
-        }
+    if (!success && status != NULL) {
+        add_fault(node, status);
     }
 }
 
@@ -108,21 +115,32 @@ static bool take_enable(epg_node_t *node, epg_cdr_reader_t *request)
     }
     state->enable = data == 1;
     begin(node);
-    epg_control_request(node->target->control, state->enable);
+    if (state->enable && node->services_clean && !state->overtaken) {
+        epg_gate_enable(node->target->control, EPG_GATE_SERVICE, EPG_ENABLE_ANY);
+    }
+    if (!state->enable && !state->stopped) {
+        epg_stop(node->target->control, EPG_STOP_SERVICE);
+    }
     return true;
 }
 
 static bool enable_ready(epg_node_t *node, bool late)
 {
     const bool enable = node->target->service_state->enable;
-    epg_status_t status;
-    if (!cycled(node, &status)) {
+    epg_status_t status = {0};
+    const bool known = cycled(node, &status, EPG_REQUEST_SEEN) &&
+                       (status.enabled == enable || cycled(node, &status, EPG_REQUEST_OVER));
+    if (!known) {
         return fail_without_loop(node, late);
     }
     if (status.enabled == enable) {
         conclude(node, true, enable ? "enabled" : "disabled", &status);
     } else {
-        conclude(node, false, enable ? "refused" : "it was enabled again", &status);
+        conclude(node, false, enable ? "refused, stopped by " : "it was enabled again", NULL);
+        if (enable) {
+            add(node->target->service_state, epg_stop_source_name(status.stop_source));
+            add_fault(node, &status);
+        }
     }
     return true;
 }
@@ -151,7 +169,7 @@ static bool take_reset(epg_node_t *node, epg_cdr_reader_t *request)
 static bool reset_ready(epg_node_t *node, bool late)
 {
     epg_status_t status;
-    if (!cycled(node, &status)) {
+    if (!cycled(node, &status, EPG_REQUEST_SEEN)) {
         return fail_without_loop(node, late);
     }
     if (status.fault != EPG_FAULT_NONE) {
@@ -183,17 +201,20 @@ static bool store_ready(epg_node_t *node, bool late)
 {
     epg_store_t *store = node->target->store;
     epg_jog_t *jog = node->target->application->jog;
-    char number[EPG_DECIMAL_SIZE + 1];
     size_t count = 0;
     epg_status_t status;
-    if (!cycled(node, &status)) {
+    if (!cycled(node, &status, EPG_REQUEST_SEEN)) {
         return fail_without_loop(node, late);
     }
     if (status.enabled || (jog != NULL && !epg_jog_idle(jog))) {
         conclude(node, false, "the actuators must be off: disable first", NULL);
-    } else if (store == NULL || !epg_store_save(store, &count)) {
-        conclude(node, false, "this target cannot store parameters", NULL);
+        return true;
+    }
+    const char *problem = store == NULL ? "this target cannot store parameters" : epg_store_save(store, &count);
+    if (problem != NULL) {
+        conclude(node, false, problem, NULL);
     } else {
+        char number[EPG_DECIMAL_SIZE + 1];
         number[epg_decimal_write_integer(number, (int64_t)count)] = '\0';
         conclude(node, true, number, &status);
         add(node->target->service_state, count == 1 ? " value is stored" : " values are stored");

@@ -109,29 +109,56 @@ static size_t whole(const unsigned char *bytes, size_t size)
     return is_sealed(bytes, HEADER + count * ENTRY) ? count : SIZE_MAX;
 }
 
-/** Returns true if every entry has the index of a parameter and a value that it can have. */
-static bool sound(const epg_store_t *store, size_t count)
+static const unsigned char *entry_at(const epg_store_t *store, size_t place)
 {
-    for (size_t i = 0; i < count; i++) {
-        const unsigned char *entry = store->bytes + HEADER + i * ENTRY;
-        if (!epg_parameters_can_be(store->parameters, (size_t)get(entry, 4), get_value(entry + 4))) {
-            return false;
-        }
-    }
-    return true;
+    return store->bytes + HEADER + place * ENTRY;
 }
 
-/** Checks the parameters in a store of `size` bytes.  If the result is EPG_STORED_LOADED, `*count` is their number. */
+/** Returns true if the parameter of the entry `place` can have its value. */
+static bool fits(const epg_store_t *store, size_t place)
+{
+    const unsigned char *entry = entry_at(store, place);
+    return epg_parameters_can_be(store->parameters, (size_t)get(entry, 4), get_value(entry + 4));
+}
+
+/** Returns EPG_STORED_PARTLY if an entry has a value that its parameter cannot have. */
+static epg_parameters_stored_t judge_entries(const epg_store_t *store, size_t count)
+{
+    epg_parameters_stored_t result = EPG_STORED_LOADED;
+    for (size_t i = 0; i < count; i++) {
+        if (get(entry_at(store, i), 4) >= store->parameters->count) {
+            return EPG_STORED_DAMAGED;
+        }
+        if (!fits(store, i)) {
+            result = EPG_STORED_PARTLY;
+        }
+    }
+    return result;
+}
+
+/** Checks the parameters in a store of `size` bytes.  `*count` is the number of its entries. */
 static epg_parameters_stored_t judge(const epg_store_t *store, size_t size, size_t *count)
 {
-    if (size < HEADER || get(store->bytes, 4) != MAGIC || get(store->bytes + 4, 4) != VERSION) {
+    if (size == 0) {
         return EPG_STORED_NOTHING;
+    }
+    if (size < HEADER || get(store->bytes, 4) != MAGIC || get(store->bytes + 4, 4) != VERSION) {
+        return EPG_STORED_DAMAGED;
     }
     if (get(store->bytes + MODEL, 8) != store->parameters->model) {
         return EPG_STORED_FOR_OTHER;
     }
-    *count = whole(store->bytes, size);
-    return *count != SIZE_MAX && sound(store, *count) ? EPG_STORED_LOADED : EPG_STORED_NOTHING;
+    const size_t entries = whole(store->bytes, size);
+    if (entries == SIZE_MAX) {
+        return EPG_STORED_DAMAGED;
+    }
+    *count = entries;
+    return judge_entries(store, entries);
+}
+
+static bool has_values(const epg_parameters_t *parameters)
+{
+    return parameters->stored == EPG_STORED_LOADED || parameters->stored == EPG_STORED_PARTLY;
 }
 
 static void load_parameters(epg_store_t *store, size_t size)
@@ -145,12 +172,14 @@ static void load_parameters(epg_store_t *store, size_t size)
         parameters->wanted[i] = false;
     }
     parameters->stored = judge(store, size, &count);
-    for (size_t i = 0; i < count && parameters->stored == EPG_STORED_LOADED; i++) {
-        const unsigned char *entry = store->bytes + HEADER + i * ENTRY;
-        const size_t index = (size_t)get(entry, 4);
-        parameters->values[index] = get_value(entry + 4);
-        parameters->applied[index] = parameters->values[index];
-        parameters->changed[index] = true;
+    for (size_t i = 0; i < count && has_values(parameters); i++) {
+        const unsigned char *entry = entry_at(store, i);
+        if (fits(store, i)) {
+            const size_t index = (size_t)get(entry, 4);
+            parameters->values[index] = get_value(entry + 4);
+            parameters->applied[index] = parameters->values[index];
+            parameters->changed[index] = true;
+        }
     }
 }
 
@@ -193,9 +222,9 @@ static void put_name(unsigned char *bytes, const char *name)
     memcpy(bytes, name, length);
 }
 
-bool epg_store_save(epg_store_t *store, size_t *values)
+const char *epg_store_save(epg_store_t *store, size_t *values)
 {
-    const epg_parameters_t *parameters = store->parameters;
+    epg_parameters_t *parameters = store->parameters;
     unsigned char *bytes = store->bytes;
     size_t count = 0;
     for (size_t i = 0; parameters != NULL && i < parameters->count; i++) {
@@ -215,5 +244,25 @@ bool epg_store_save(epg_store_t *store, size_t *values)
     put(bytes + COUNT, count, 4);
     seal(bytes, HEADER + count * ENTRY);
     *values = count;
-    return epg_port_store_write(bytes, HEADER + count * ENTRY + CHECK);
+    const char *problem = epg_port_store_write(bytes, HEADER + count * ENTRY + CHECK);
+    if (problem == NULL && parameters != NULL) {
+        parameters->stored = EPG_STORED_SAVED;
+    }
+    return problem;
+}
+
+const char *epg_store_refused(const epg_store_t *store, size_t index)
+{
+    const epg_parameters_t *parameters = store->parameters;
+    if (parameters == NULL || parameters->stored != EPG_STORED_PARTLY) {
+        return NULL;
+    }
+    const size_t count = (size_t)get(store->bytes + COUNT, 4);
+    size_t refused = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (!fits(store, i) && refused++ == index) {
+            return parameters->table[get(entry_at(store, i), 4)].name;
+        }
+    }
+    return NULL;
 }

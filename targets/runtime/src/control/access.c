@@ -5,7 +5,6 @@
  */
 #include "epg/access.h"
 
-#include "epg/finite.h"
 #include "epg/port.h"
 #include "setpoint.h"
 
@@ -53,8 +52,7 @@ static bool take_setpoints(epg_setpoint_access_t *self, const epg_application_t 
         self->counts[i] = sample->count;
         /* The newest message may have been received after this value was set: the later one counts. */
         if (sample->received_ns >= application->samples[i].received_ns) {
-            epg_setpoint_put(&application->setpoint_states[i], sample);
-            taken = true;
+            taken = epg_setpoint_put(&application->setpoint_states[i], sample) || taken;
         }
     }
     return taken;
@@ -106,8 +104,8 @@ bool epg_access_set(epg_setpoint_access_t *self, epg_control_t *control, size_t 
     if (!epg_access_join(&self->access, control, clear_setpoints)) {
         return false;
     }
-    const bool finite = epg_is_finite(value);
-    if (finite) {
+    const bool accepted = epg_setpoint_accepts(&control->application->setpoints[index], value);
+    if (accepted) {
         epg_setpoint_sample_t *sample = &self->given[index];
         sample->value = value;
         sample->received_ns = epg_port_time_ns();
@@ -119,7 +117,7 @@ bool epg_access_set(epg_setpoint_access_t *self, epg_control_t *control, size_t 
     if (self->arrivals != NULL) {
         atomic_store(&self->arrivals[index], atomic_load(&self->arrivals[index]) + 1U);
     }
-    return finite;
+    return accepted;
 }
 
 /* Values --------------------------------------------------------------------------------------------------------- */

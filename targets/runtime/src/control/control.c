@@ -5,6 +5,8 @@
  */
 #include "epg/control.h"
 
+#include <string.h>
+
 #include "../sides.h"
 #include "epg/port.h"
 #include "row.h"
@@ -12,14 +14,23 @@
 
 void epg_control_start(epg_control_t *control, const epg_application_t *application)
 {
-    *control = (epg_control_t){
-        .application = application,
-        .enabled = application->enable_at_start,
-        .fault_component = EPG_NO_COMPONENT,
-        .initialise = true,
-        .status_exchange = {.buffers = control->status_buffers, .size = sizeof control->status_buffers[0]},
-        .observer_exchange = {.buffers = control->observer_buffers, .size = sizeof control->observer_buffers[0]},
-    };
+    const bool again = control->application != NULL;
+    const uint64_t stop_number = again ? control->stop_number : (uint64_t)epg_port_boot_id() << 32U;
+    /* Without the latch: a stop before the start is kept. */
+    memset(control, 0, offsetof(epg_control_t, latch));
+    control->application = application;
+    control->stop_number = stop_number;
+    control->enabled = application->enable_at_start;
+    control->fault_component = EPG_NO_COMPONENT;
+    control->initialise = true;
+    control->status_exchange.buffers = control->status_buffers;
+    control->status_exchange.size = sizeof control->status_buffers[0];
+    control->observer_exchange.buffers = control->observer_buffers;
+    control->observer_exchange.size = sizeof control->observer_buffers[0];
+    if (again) {
+        epg_stop_count(control, EPG_STOP_START);
+        control->latch.guard = 0U; /* the first cycle may be enabled: nothing has moved yet */
+    }
     control->statistics.computation_min = UINT32_MAX; /* no cycle can take longer */
     control->setpoints_move = epg_setpoints_start(application);
     for (size_t i = 0; i < application->monitor_count; i++) {
@@ -50,22 +61,17 @@ static inline unsigned int newest(atomic_uint *word)
     return atomic_load_explicit(word, memory_order_relaxed);
 }
 
-static void stop_jog(epg_control_t *control)
-{
-    if (control->application->jog != NULL) {
-        control->application->jog->stop = true;
-    }
-}
-
 void epg_control_fault(epg_control_t *control, epg_fault_t fault, uint16_t component)
 {
     if (control->fault == EPG_FAULT_NONE) {
         control->fault = fault;
         control->fault_component = component;
         control->statistics.faults++;
+        epg_stop_count(control, EPG_STOP_FAULT);
+    } else {
+        epg_stop_cancel(control); /* a request that came while the cause was there does not act when it has gone */
     }
     control->enabled = false;
-    stop_jog(control);
 }
 
 /** Latches a fault of the whole target. */
@@ -80,29 +86,30 @@ static void clear_fault(epg_control_t *control)
     control->fault_component = EPG_NO_COMPONENT;
 }
 
-/** Carries out a new request.  `permitted` is true if the fail-safe input allows enabling. */
-static void handle_request(epg_control_t *control, bool permitted, uint64_t now_ns)
+/** Enables the target.  `permitted` is false if the fail-safe input forbids that: then only the fault is cleared. */
+static void enable(epg_control_t *control, unsigned int request, bool permitted, uint64_t now_ns)
 {
-    const unsigned int request = newest(&control->request);
-    if (request == control->request_seen) {
-        return;
-    }
-    control->request_seen = request;
-    stop_jog(control);
-    if ((request & EPG_REQUEST_ENABLE) == 0U) {
-        control->enabled = false;
-        return;
-    }
-    if (control->enabled) {
-        return;
-    }
     clear_fault(control);
     if (permitted) {
         control->enabled = true;
-        control->leased = (request & EPG_REQUEST_LEASED) != 0U;
+        control->leased = (request & EPG_ENABLE_LEASED) != 0U;
         control->initialise = true;
         control->consecutive_overruns = 0;
         epg_setpoints_enable(control->application, now_ns);
+    }
+}
+
+/** Takes the newest stop and the newest request to enable. */
+static void handle_requests(epg_control_t *control, bool permitted, uint64_t now_ns)
+{
+    unsigned int request = 0;
+    if (control->enabled && atomic_load(&control->latch.pending) == 0U) {
+        return; /* most cycles: an enabled target only looks for a stop */
+    }
+    if (epg_stop_take(control, &request)) {
+        control->enabled = false;
+    } else if (request != 0U) {
+        enable(control, request, permitted, now_ns);
     }
 }
 
@@ -126,7 +133,7 @@ static void command(epg_control_t *control, const epg_application_t *application
         atomic_store(&control->reset, false); /* first, so that a request during this cycle is not lost */
         clear_fault(control);
     }
-    handle_request(control, !refused, now_ns);
+    handle_requests(control, !refused, now_ns);
     if (refused) {
         epg_control_fault(control, EPG_FAULT_FAIL_SAFE, application->fail_safe_component);
     }
@@ -187,16 +194,13 @@ static bool run_model(epg_control_t *control)
 }
 
 /** Drives the actuator that is moved by hand.  Returns true if there is one; the model must not be stepped then. */
-static bool move_by_hand(epg_control_t *control, epg_jog_t *jog)
+static bool move_by_hand(epg_control_t *control, epg_jog_t *jog, uint64_t now_ns)
 {
     if (jog == NULL) {
         return false;
     }
-    if (!epg_handover_there(&jog->handover)) {
-        jog->stop = false;
-        return false;
-    }
-    if (!epg_jog_cycle(jog, control->enabled)) {
+    if (!epg_handover_there(&jog->handover) ||
+        !epg_jog_cycle(jog, !control->enabled && atomic_load(&control->latch.moves) != 0U, is_over(control, now_ns))) {
         return false;
     }
     /* Initialise the model after the movement.  A model that stopped after a fault stays stopped. */
@@ -218,6 +222,30 @@ static uint64_t wait_for_outputs(epg_control_t *control, const epg_application_t
     }
     epg_port_wait_until(due_ns);
     return epg_port_time_ns() - now_ns;
+}
+
+/** Writes the outputs that the model has computed.  Returns the duration of the wait for their delay in nanoseconds. */
+static uint64_t write_outputs(epg_control_t *control, const epg_application_t *application, uint64_t tick_ns)
+{
+    uint64_t waited_ns = 0;
+    if (application->prepare != NULL) {
+        application->prepare();
+    }
+    if (application->output_delay_ns > 0U) {
+        waited_ns = wait_for_outputs(control, application, tick_ns);
+    }
+    application->write();
+    return waited_ns;
+}
+
+/** Passes the values of a step on to the communication side, and to the history. */
+static void monitor(const epg_application_t *application)
+{
+    application->monitor(application->monitor_values);
+    epg_exchange_write(application->monitor_exchange, application->monitor_values);
+    if (application->history != NULL) {
+        epg_history_add(application->history, application->monitor_values);
+    }
 }
 
 static void count_lateness(epg_control_t *control, uint64_t tick_ns, uint64_t begin_ns)
@@ -306,27 +334,17 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
     if (application->parameters != NULL && epg_handover_there(&application->parameters->handover)) {
         epg_parameters_apply(application->parameters, control->model_valid);
     }
-    const bool jogging = move_by_hand(control, application->jog);
+    const bool jogging = move_by_hand(control, application->jog, begin_ns);
     const bool stepped = !jogging && run_model(control);
     if (jogging) {
         /* Only the actuator that is moved by hand is driven.  The others are safe, because the target is disabled. */
     } else if (!control->enabled) {
         application->safe();
     } else if (stepped) {
-        if (application->prepare != NULL) {
-            application->prepare();
-        }
-        if (application->output_delay_ns > 0U) {
-            begin_ns += wait_for_outputs(control, application, tick_ns); /* waiting is not computation time */
-        }
-        application->write();
+        begin_ns += write_outputs(control, application, tick_ns); /* waiting is not computation time */
     }
     if (stepped && application->monitor != NULL) {
-        application->monitor(application->monitor_values);
-        epg_exchange_write(application->monitor_exchange, application->monitor_values);
-        if (application->history != NULL) {
-            epg_history_add(application->history, application->monitor_values);
-        }
+        monitor(application);
     }
     control->statistics.setpoints_dropped = newest(&control->dropped);
     epg_reach(control, stepped ? EPG_ACCESS_STEPPED : EPG_ACCESS_RESTED);

@@ -9,7 +9,6 @@ void epg_jog_clear(epg_jog_t *jog)
 {
     jog->end = EPG_JOG_STOPPED;
     jog->running = false;
-    jog->stop = false;
     epg_handover_clear(&jog->handover);
 }
 
@@ -30,28 +29,22 @@ static void finish(epg_jog_t *jog, epg_jog_end_t end)
     epg_handover_return(&jog->handover);
 }
 
-bool epg_jog_cycle(epg_jog_t *jog, bool enabled)
+bool epg_jog_cycle(epg_jog_t *jog, bool permitted, bool over)
 {
-    const bool forbidden = jog->stop || enabled;
-    jog->stop = false;
     if (!epg_handover_there(&jog->handover)) {
         return false;
-    }
-    const unsigned int renewals = atomic_load(&jog->renewals);
-    if (renewals != jog->renewals_seen) {
-        jog->renewals_seen = renewals;
-        jog->elapsed = 0;
     }
     if (!jog->running) {
         take_readings(jog, jog->first);
         jog->elapsed = 0;
-        if (forbidden) {
+        if (!permitted) {
             finish(jog, EPG_JOG_REFUSED);
             return false;
         }
         jog->running = true;
-    } else if (forbidden || jog->elapsed == jog->cycles) {
-        finish(jog, forbidden ? EPG_JOG_STOPPED : EPG_JOG_DONE);
+    }
+    if (!permitted || (jog->leased ? over : jog->elapsed == jog->cycles)) {
+        finish(jog, permitted ? EPG_JOG_DONE : EPG_JOG_STOPPED);
         return false;
     }
     jog->elapsed++;

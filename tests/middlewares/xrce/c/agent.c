@@ -34,6 +34,7 @@ void agent_reset(void)
     memset(&agent, 0, sizeof agent);
     agent.room = 65507;
     agent.acknowledges = true;
+    agent.ahead_ns = UINT64_C(3600000000000);
 }
 
 void agent_restart(void)
@@ -47,6 +48,7 @@ void agent_say_raw(const void *data, size_t size)
     const size_t most = sizeof agent.waiting / sizeof agent.waiting[0];
     CHECK(agent.waiting_count < most && size <= AGENT_FRAME);
     agent_frame_t *frame = &agent.waiting[(agent.waiting_first + agent.waiting_count++) % most];
+    frame->time_ns = fake_port.now_ns + agent.there_ns + agent.back_ns;
     frame->size = size;
     memcpy(frame->data, data, size);
 }
@@ -112,16 +114,32 @@ static void ping(const unsigned char *payload)
     agent_say(false, INFO, info, sizeof info);
 }
 
-/** The agent's clock is an hour ahead of the board's. */
 static void tell_time(const unsigned char *payload)
 {
     unsigned char reply[24];
-    const uint32_t now[2] = {(uint32_t)(3600 + fake_port.now_ns / 1000000000U),
-                             (uint32_t)(fake_port.now_ns % 1000000000U)};
+    const uint64_t now_ns = fake_port.now_ns + agent.there_ns + agent.ahead_ns;
+    const uint32_t now[2] = {(uint32_t)(now_ns / 1000000000U), (uint32_t)(now_ns % 1000000000U)};
+    if (agent.mute_clock) {
+        return;
+    }
     memcpy(reply, now, sizeof now);
     memcpy(reply + 8, now, sizeof now);
     memcpy(reply + 16, payload, 8);
     agent_say(false, TIMESTAMP_REPLY, reply, sizeof reply);
+}
+
+/** A sample of writer 1 is a number, one of writer 2 begins with a stamp. */
+static void take_sample(const unsigned char *payload)
+{
+    uint32_t stamp[2];
+    if (payload[3] >> 4 == 1) {
+        memcpy(&agent.values[agent.samples++], payload + 4, sizeof(double));
+        return;
+    }
+    memcpy(stamp, payload + 4, sizeof stamp);
+    CHECK(agent.stamp_count < AGENT_FRAMES);
+    agent.stamps[agent.stamp_count++] =
+        (agent_stamp_t){.time_ns = fake_port.now_ns, .stamp_ns = stamp[0] * UINT64_C(1000000000) + stamp[1]};
 }
 
 static void take_submessage(uint8_t id, const unsigned char *payload)
@@ -138,7 +156,7 @@ static void take_submessage(uint8_t id, const unsigned char *payload)
         memcpy(agent.reader, payload + 2, 2);
         break;
     case WRITE_DATA:
-        memcpy(&agent.values[agent.samples++], payload + 4, sizeof(double));
+        take_sample(payload);
         break;
     case GET_INFO:
         ping(payload);
@@ -216,11 +234,20 @@ static bool stream_connected(void *context)
 static size_t stream_read(void *context, void *data, size_t size)
 {
     (void)context;
-    CHECK(!agent.unplugged);
+    if (agent.busy) {
+        return 0;
+    }
+    for (; agent.unread > 0; agent.unread--) {
+        const agent_frame_t *sent = &agent.sent[agent.sent_count - agent.unread];
+        take_frame(sent->data, sent->size);
+    }
     if (agent.waiting_count == 0) {
         return 0;
     }
     const agent_frame_t *frame = &agent.waiting[agent.waiting_first];
+    if (frame->time_ns > fake_port.now_ns) {
+        return 0; /* it is still on its way */
+    }
     const size_t count = frame->size < size ? frame->size : size;
     memcpy(data, frame->data, count);
     agent.waiting_first = (agent.waiting_first + 1) % (sizeof agent.waiting / sizeof agent.waiting[0]);
@@ -237,7 +264,9 @@ static size_t stream_write(void *context, const void *data, size_t size)
     frame->time_ns = fake_port.now_ns;
     frame->size = size;
     memcpy(frame->data, data, size);
-    if (!agent.absent) {
+    if (agent.busy) {
+        agent.unread++;
+    } else if (!agent.absent) {
         take_frame(frame->data, size);
     }
     return size;
@@ -246,7 +275,7 @@ static size_t stream_write(void *context, const void *data, size_t size)
 static size_t stream_writable(void *context)
 {
     (void)context;
-    return agent.room;
+    return agent.unplugged ? 0 : agent.room;
 }
 
 const epg_stream_t agent_stream = {.connected = stream_connected,

@@ -21,15 +21,26 @@ typedef struct agent_frame {
     unsigned char data[AGENT_FRAME];
 } agent_frame_t;
 
+/** A message with a stamp. */
+typedef struct agent_stamp {
+    uint64_t time_ns;  /**< board time at which it was sent */
+    uint64_t stamp_ns; /**< its stamp */
+} agent_stamp_t;
+
 typedef struct agent {
     /* set by the test */
     bool absent;         /**< the agent does not answer */
+    bool busy;           /**< frames wait in both directions */
     bool unplugged;      /**< the stream reports that no agent is connected */
     bool acknowledges;   /**< acknowledges frames of the reliable stream at once */
     uint8_t status;      /**< status of every request to create */
     size_t room;         /**< bytes that the stream takes */
     unsigned int losing; /**< number of reliable frames that are lost on their way to the agent */
     bool loses_every;    /**< all reliable frames are lost */
+    uint64_t there_ns;   /**< duration of a frame's way to the agent */
+    uint64_t back_ns;    /**< duration of a frame's way to the board */
+    uint64_t ahead_ns;   /**< the agent's clock is ahead of the board's time by this much */
+    bool mute_clock;     /**< the agent does not answer requests for the time */
 
     /* seen by the test */
     agent_frame_t sent[AGENT_FRAMES]; /**< frames of the board */
@@ -43,14 +54,17 @@ typedef struct agent {
     unsigned int pings;
     unsigned int heartbeats;
     unsigned int samples;
-    double values[AGENT_FRAMES]; /**< values of the samples */
+    double values[AGENT_FRAMES];        /**< values of the samples of the first publication */
+    agent_stamp_t stamps[AGENT_FRAMES]; /**< of the messages of the second publication */
+    unsigned int stamp_count;
     uint32_t key;
     uint16_t mtu;
 
     /* internal to the agent */
     uint16_t expected; /**< the next frame of the board's reliable stream */
     uint16_t next;     /**< the next frame of the agent's reliable stream */
-    agent_frame_t waiting[64];
+    size_t unread;     /**< newest frames in `sent` that it has not read, because it was busy */
+    agent_frame_t waiting[128];
     size_t waiting_first;
     size_t waiting_count;
     uint8_t request[2]; /**< id of the last request to read, and the number of its reader */

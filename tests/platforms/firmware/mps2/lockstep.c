@@ -90,6 +90,12 @@ size_t jiwy_console_send(const void *data, size_t size)
     return size;
 }
 
+/** QEMU has no random number; each run is one start. */
+uint32_t jiwy_boot_id(void)
+{
+    return 1U;
+}
+
 size_t jiwy_store_load(void *data, size_t size)
 {
     (void)data;

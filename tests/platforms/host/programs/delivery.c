@@ -9,9 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "communication.h"
 #include "epg/plant.h"
 #include "epg/port.h"
+#include "files/communication.h"
 
 enum { START_NS = 5000 };
 
@@ -23,10 +23,18 @@ bool epg_control_receive(epg_control_t *control, size_t index, double value, uin
     return true;
 }
 
-void epg_control_request(epg_control_t *control, bool enable)
+void epg_control_enable(epg_control_t *control, unsigned int request)
 {
     (void)control;
-    puts(enable ? "enable" : "disable");
+    (void)request;
+    puts("enable");
+}
+
+void epg_stop(epg_control_t *control, epg_stop_source_t source)
+{
+    (void)control;
+    (void)source;
+    puts("disable");
 }
 
 void epg_control_alive(epg_control_t *control)

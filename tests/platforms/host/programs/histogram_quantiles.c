@@ -2,7 +2,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-#include "histogram.h"
+#include "loop/histogram.h"
 
 int main(void)
 {

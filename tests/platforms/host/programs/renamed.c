@@ -6,8 +6,8 @@
 
 #include "epg/node.h"
 #include "epg/store.h"
-#include "ros.h"
-#include "store.h"
+#include "port/store.h"
+#include "ros/ros.h"
 
 static unsigned char store_bytes[EPG_STORE_SIZE(0)];
 static epg_store_t store = {.bytes = store_bytes};

@@ -2,7 +2,7 @@
  * @file
  * The connection of the console to a program by UDP, datagram by datagram.
  */
-#include "linux/udp_session.h"
+#include "links/linux/udp_session.h"
 
 #include "check.h"
 
@@ -264,8 +264,4 @@ TEST(any_bytes_are_harmless)
     }
 }
 
-RUN(ENTRY(commands_act_once_in_any_order), ENTRY(commands_below_the_lowest_number_do_not_act),
-    ENTRY(a_command_without_room_is_not_lost), ENTRY(the_program_learns_which_commands_have_arrived),
-    ENTRY(lines_are_sent_again_until_they_are_confirmed), ENTRY(unconfirmed_lines_hold_back_new_ones),
-    ENTRY(rows_share_datagrams_and_are_sent_once), ENTRY(a_full_socket_holds_back_frames_and_loses_none),
-    ENTRY(any_bytes_are_harmless))
+RUN()

@@ -33,7 +33,7 @@ volatile bool axes_fault;
 
 uint32_t mps2_count(uint8_t pin_a)
 {
-    if (axes_fault && (atomic_load(&jiwy_target.control->request) & 1U) != 0U) {
+    if (axes_fault && atomic_load(&jiwy_target.control->latch.requests[EPG_GATE_CONSOLE]) != 0U) {
         axes_fault = false;
         __asm volatile("udf #1");
     }

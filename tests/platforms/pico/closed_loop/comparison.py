@@ -4,16 +4,16 @@
 from __future__ import annotations
 
 import math
-from array import array
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from epg.diagnostics import Diagnostics
+from epg.generator.diagnostics import Diagnostics
+from epg.runs.recording import Signal
+from epg.runs.reference import load_reference
+from epg.runs.scenario import Scenario
+from epg.runs.tracking import Check, Tracking, WindowResult, check, evaluate, track
 from epg.simulate.load_scenario import load_scenario
-from epg.simulate.reference import load_reference
-from epg.simulate.scenario import Scenario
-from epg.simulate.tracking import Check, Tracking, WindowResult, check, evaluate, track
 from tests.platforms.pico.images import images
 
 from .host import Columns, host_programs, replayed, simulated
@@ -34,9 +34,9 @@ class Comparison:
     replayed: Columns
 
     def tracking(self, columns: Mapping[str, Sequence[float]]) -> list[Tracking]:
-        arrays = {name: array("d", values) for name, values in columns.items()}
+        signals = {name: Signal(columns["time"], values) for name, values in columns.items()}
         reference = load_reference(self.scenario.reference) if self.scenario.reference else None
-        return [track(axis, self.scenario.profiles[axis.setpoint], arrays, reference) for axis in self.scenario.axes]
+        return [track(axis, self.scenario.profiles[axis.setpoint], signals, reference) for axis in self.scenario.axes]
 
     def windows(self, columns: Mapping[str, Sequence[float]]) -> list[WindowResult]:
         return [result for tracking in self.tracking(columns) for result in evaluate(tracking)]

@@ -5,18 +5,16 @@ from __future__ import annotations
 
 import hashlib
 import os
-import shutil
-import subprocess
 import sys
 from collections.abc import Mapping
 from pathlib import Path
 
-import pytest
-
-from epg.bootstrap import cache_folder
-from epg.simulate.executable import read_trace, run_executable
-from epg.simulate.scenario import Scenario
-from epg.simulate.setpoints import setpoint_rows, write_setpoints
+from epg.generator.bootstrap import cache_folder
+from epg.runs.executable import run_executable
+from epg.runs.recording import read_table
+from epg.runs.scenario import Scenario
+from epg.runs.setpoint_file import setpoint_rows, write_setpoints
+from tests.cmake.built import built
 from tests.emulator.toolchain import locked
 
 from .recording import Recording
@@ -28,21 +26,11 @@ Columns = dict[str, "list[float]"]
 
 def host_programs(angles: Mapping[str, float]) -> Path:
     """Build folder with jiwy_host and jiwy_replay_host; ``angles`` are the first angles of the simulated robot."""
-    for tool, package in (("cmake", "cmake"), ("ninja", "ninja-build")):
-        if not shutil.which(tool):
-            pytest.skip(f"{tool} is missing: apt install {package}")
     settings = {f"START_{axis.upper()}": repr(angle) for axis, angle in sorted(angles.items())}
-    settings["Python3_EXECUTABLE"] = sys.executable
-    digest = hashlib.sha256(repr((str(PROJECT), sorted(settings.items()))).encode()).hexdigest()[:16]
+    digest = hashlib.sha256(repr((str(PROJECT), sys.executable, sorted(settings.items()))).encode()).hexdigest()[:16]
     folder: Path = cache_folder() / "test-build" / f"closed-loop-host-{digest}"
     with locked(folder):
-        defined = [f"-D{name}={value}" for name, value in settings.items()]
-        for command in (
-            ["cmake", "-S", str(PROJECT), "-B", str(folder), "-G", "Ninja", *defined],
-            ["cmake", "--build", str(folder), "--parallel", "2"],
-        ):
-            done = subprocess.run(command, capture_output=True, text=True, check=False)
-            assert done.returncode == 0, done.stdout + done.stderr
+        built(PROJECT, folder, *(f"-D{name}={value}" for name, value in settings.items()))
     return folder
 
 
@@ -77,5 +65,5 @@ def _run(program: Path, duration: float, signals: list[str], folder: Path) -> Co
     run_executable(
         program, folder, duration, folder / "setpoints.csv", realtime=False, progress=lambda message: None
     )  # fmt: skip
-    trace = read_trace(folder / "trace.csv", signals)
-    return {name: list(values) for name, values in trace.items()}
+    trace = read_table(folder / "trace.csv", signals.__contains__).signals
+    return {"time": list(trace[signals[0]].time), **{name: list(signal.value) for name, signal in trace.items()}}

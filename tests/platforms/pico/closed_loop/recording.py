@@ -13,7 +13,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from epg.simulate.scenario import Scenario
+from epg.runs.scenario import Scenario
 from tests.emulator.emulator import Emulator
 
 from .robot import AXES, PERIOD, connect, first_tick

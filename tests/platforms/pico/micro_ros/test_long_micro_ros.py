@@ -12,9 +12,11 @@ from tests.platforms.pico.stacks.workload import COMMANDS
 from tests.platforms.pico.test_faults import START, STOP, order
 from tests.platforms.pico.uart.test_node import check_serial_line, node_image
 from tests.platforms.pico.xrce.board import CONSOLE_PORT
-from tests.platforms.pico.xrce.scenarios import SCENARIOS, SILENCE, assert_is_back, hold, restart
+from tests.platforms.pico.xrce.scenarios import SCENARIOS, assert_is_back, hold, restart
 
 from .firmware import MicroRosJiwy, firmware, library
+
+SILENCE = 1000  # milliseconds after which micro_ros gives a silent agent up
 
 
 def test_all_that_happens_to_xrce() -> None:

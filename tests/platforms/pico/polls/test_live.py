@@ -14,10 +14,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from tests.connect.page import Page, serving, session_of
+from tests.connect.page import serving, session_of
 from tests.connect.test_live import Events
 from tests.emulator.emulator import Emulator
 from tests.platforms.pico.images import images, skip_unless_emulated
+from tests.waiting import until
 
 from .measure import CONSOLE, _polls, _started
 
@@ -68,11 +69,12 @@ def test_a_board_is_tuned_and_stopped_through_the_page() -> None:
         pico.run(milliseconds=STEP)
         with terminal(pico) as port, serving(session) as page:
             session.live.connect(port, expected="")
-            events = Events(page, lambda event: answer(page, event["number"]))
+            events = Events(page)
             page.post("live/stop")
+            events.wait_until_in_time()
             page.post("live/enable", page="one")
             moves(events)
-            assert page.post("live/command", line="set Pan\\PID\\kp=2.2")["answer"] == ["ok set"]
+            assert page.post("live/command", page="one", line="set Pan\\PID\\kp=2.2")["answer"] == ["ok set"]
             found = page.state()["live"]["target"]
             assert found["state"]["enabled"] == "1"
             (gain,) = (each for each in found["parameters"] if each["name"] == "Pan\\PID\\kp")
@@ -89,15 +91,9 @@ def test_a_board_is_tuned_and_stopped_through_the_page() -> None:
         assert polls.deviations == {0}, polls
 
 
-def answer(page: Page, number: int | None) -> None:
-    if number is not None:
-        page.post("live/respond", page="one", number=number)
-
-
 def moves(events: Events) -> None:
     """Waits until the position of the first axis changes."""
     first = len(events.all)
-    end = time.monotonic() + 30
-    while len({point[2][0] for event in events.all[first:] for point in event["points"]}) < 3:
-        assert time.monotonic() < end, "it does not move"
-        time.sleep(0.05)
+    until(
+        lambda: len({point[2][0] for event in events.all[first:] for point in event["points"]}) > 2, "it does not move"
+    )

@@ -35,7 +35,7 @@ def test_a_program_gets_every_row_of_20_signals_in_every_cycle(platform: str) ->
         assert polls.faults == 0
         assert polls.longest <= LONGEST, polls
         assert polls.deviations == {0}, polls
-        assert streamed.rows >= MILLISECONDS
+        assert streamed.rows >= MILLISECONDS - 2, "the stream begins and ends in the turns after its commands"
         assert (streamed.dropped, streamed.damaged) == (0, 0)
         assert streamed.answers == MILLISECONDS // CHANGE_MS
         assert len(set(streamed.values)) > 1, "the robot moves"

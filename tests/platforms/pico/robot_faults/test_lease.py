@@ -7,6 +7,7 @@ The times are those of the board.  tests/connect/browser/test_failures.py lets t
 from __future__ import annotations
 
 import random
+import re
 from collections.abc import Callable, Iterator
 
 import pytest
@@ -20,8 +21,11 @@ from tests.platforms.pico.images import PLATFORMS, skip_unless_emulated
 LEASE = 300
 """Milliseconds."""
 PULSE = 100
-"""Milliseconds between two commands that prolong a movement."""
-JOG = encode(b"C\2jog pwm_pan 0.1 250")
+"""Milliseconds."""
+
+
+def jog(number: int) -> bytes:
+    return encode(b"C\2jog pwm_pan 0.1 250 number=%d" % number)
 
 
 class Program:
@@ -32,16 +36,26 @@ class Program:
         self.answered = 0
 
     def run(self, milliseconds: int, *, moves: bool = False, garbage: int = 0) -> None:
-        """Sends each number back, or prolongs the movement.  ``garbage`` bytes are in front of each frame."""
-        for step in range(milliseconds):
+        """Sends each number back, or prolongs the movement with it.  ``garbage`` bytes are in front of each frame."""
+        for _ in range(milliseconds):
             self.board.pico.run(milliseconds=1)
             for part in self._decoder.feed(self.board.pico.receive_bytes()):
-                if isinstance(part, bytes) and part.startswith(b"N") and not moves:
-                    self._send(encode(b"R" + part[1:]), garbage)
+                if isinstance(part, bytes) and part.startswith(b"N"):
+                    number = int.from_bytes(part[1:5], "little")
+                    self._send(jog(number) if moves else encode(b"R" + part[1:]), garbage)
                     self.answered += 1
-            if moves and step % PULSE == 0:
-                self._send(JOG, garbage)
-                self.answered += 1
+
+    def enable(self) -> None:
+        """Enables the target on a lease; a program must name the newest stop that it knows."""
+        self._send(encode(b"C\1stats"), 0)
+        for _ in range(LEASE):
+            self.board.pico.run(milliseconds=1)
+            for part in self._decoder.feed(self.board.pico.receive_bytes()):
+                found = re.search(rb" stop=(\S+)", part) if isinstance(part, bytes) else None
+                if found:
+                    self._send(encode(b"C\2enable leased after=" + found[1]), 0)
+                    return
+        raise AssertionError("the board did not tell its newest stop")
 
     def flood(self, milliseconds: int) -> None:
         """Sends only garbage, as much as USB carries, and understands nothing of what the board sends."""
@@ -84,7 +98,10 @@ def program(request: pytest.FixtureRequest) -> Iterator[Program]:
 @pytest.mark.parametrize("failure", [falls_silent, closes_the_port, cable_out, line_flooded])
 def test_the_motors_are_safe(program: Program, failure: Callable[[Program], None], moves: bool) -> None:
     pico = program.board.pico
-    pico.send(encode(b"C\1enable leased") if not moves else JOG)
+    if moves:
+        pico.send(jog(0))
+    else:
+        program.enable()
     # It homes for longer than a lease, also with garbage between the frames: damaged frames have no effect.
     program.run(LEASE + PULSE, moves=moves)
     program.run(LEASE, moves=moves, garbage=30)

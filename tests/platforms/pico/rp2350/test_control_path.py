@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from epg.diagnostics import Diagnostics
+from epg.generator.diagnostics import Diagnostics
 from epg.simulate.load_scenario import load_scenario
 from tests.emulator.build import build
 from tests.emulator.toolchain import ROOT, skip_if_missing, unicorn

@@ -18,9 +18,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from epg.bootstrap import cache_folder
-from epg.diagnostics import Diagnostics
-from epg.simulate.scenario import Profile, ProfilePart
+from epg.generator.bootstrap import cache_folder
+from epg.generator.diagnostics import Diagnostics
+from epg.runs.scenario import Profile, ProfilePart
 from epg.system.load_system import load_system
 from tests.emulator.build import build
 from tests.emulator.emulator import CYCLES_PER_MILLISECOND

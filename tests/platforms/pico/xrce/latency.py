@@ -63,5 +63,6 @@ def evaluate(sent: list[int], given: list[int], ticks: list[int], levels: list[i
         assert begin < arrival < level
         tick = bisect_right(ticks, level) - 1
         cycles = tick - (bisect_right(ticks, arrival) - 1)
-        steps.append(Step((level - begin) / CLOCK, (level - arrival) / CLOCK, cycles, (level - ticks[tick]) / CLOCK))
+        in_cycle = (level - ticks[tick]) / CLOCK
+        steps.append(Step((level - begin) / CLOCK, (level - arrival) / CLOCK, cycles, in_cycle, after_tick=in_cycle))
     return steps

@@ -13,8 +13,10 @@ from .board import AGENT_PORT, CONSOLE_PORT, Jiwy
 from .checks import assert_undisturbed
 
 PAN, TILT = AXES
-SILENCE = 1000
+SILENCE = 4000
 """Milliseconds after which a silent agent counts as lost."""
+RECOVERY = 2000
+"""Milliseconds after which streams that make no progress end the session."""
 LATEST = 100
 """Milliseconds from the start of an agent to the board's first message, at most."""
 
@@ -62,7 +64,7 @@ def freeze(jiwy: Jiwy) -> None:
     """The agent does not answer, but the port stays open: the board loses this agent, too, and finds it again."""
     begin = jiwy.agent.now()
     jiwy.agent.freeze()
-    jiwy.agent.run(2 * SILENCE)
+    jiwy.agent.run(SILENCE + 500)
     assert_holds(jiwy)
     jiwy.agent.thaw()
     jiwy.agent.wait_for("rt/pan_publisher")
@@ -107,7 +109,7 @@ def damage(jiwy: Jiwy) -> None:
 def recover(jiwy: Jiwy) -> None:
     """Waits the time in which the board must recover by itself after any fault."""
     jiwy.pico.send("\nwatch none\n", port=CONSOLE_PORT)
-    jiwy.agent.run(2 * SILENCE)
+    jiwy.agent.run(RECOVERY)
     jiwy.agent.wait_for("rt/pan_publisher")
 
 

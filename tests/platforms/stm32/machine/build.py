@@ -11,7 +11,7 @@ import subprocess
 from functools import lru_cache
 from pathlib import Path
 
-from epg.bootstrap import cache_folder
+from epg.generator.bootstrap import cache_folder
 from tests.emulator.toolchain import arm_gcc, locked, skip_if_missing, tool, unicorn
 
 PROGRAMS = Path(__file__).resolve().parent / "programs"

@@ -11,9 +11,9 @@ CR, CRRCR, CFGR, D1CFGR, D2CFGR, D3CFGR = 0x00, 0x08, 0x10, 0x18, 0x1C, 0x20
 PLLCKSELR, PLLCFGR, PLL1DIVR, PLL1FRACR, D2CCIP2R = 0x28, 0x2C, 0x30, 0x34, 0x54
 BDCR, CSR, RSR = 0x70, 0x74, 0xD0
 AHB1RSTR, AHB4RSTR, APB1LRSTR, APB2RSTR = 0x80, 0x88, 0x90, 0x98
-AHB1ENR, AHB4ENR, APB1LENR, APB2ENR, APB4ENR = 0xD8, 0xE0, 0xE8, 0xF0, 0xF4
+AHB1ENR, AHB2ENR, AHB4ENR, APB1LENR, APB2ENR, APB4ENR = 0xD8, 0xDC, 0xE0, 0xE8, 0xF0, 0xF4
 PWR_CR1, PWR_CSR1, PWR_CR3, PWR_D3CR, PWRCR = 0x00, 0x04, 0x0C, 0x18, 0x2C
-RTCAPBEN, DBP, BDRST = 16, 1 << 8, 1 << 16
+RTCAPBEN, RNGEN, DBP, BDRST = 16, 6, 1 << 8, 1 << 16
 VOS_READY, USB33_READY, OVERDRIVE = 1 << 13, 1 << 26, 1
 AT_RESET = {CR: 0x83, CFGR: 0, PLLCKSELR: 0x02020200, PLLCFGR: 0x01FF0000, RSR: 0x00FE0000}
 AT_RESET |= dict.fromkeys((PLL1DIVR, PLL1DIVR + 8, PLL1DIVR + 16), 0x01010280)
@@ -148,6 +148,12 @@ class Clocks:
         hsi48 = HSI48 if self.read(CR) >> 13 & 1 else 0
         clock = (0, self.pll(1, "q"), self.pll(3, "q"), hsi48)[choice]
         return clock if self.read_power(PWR_CR3) & USB33_READY else 0
+
+    @property
+    def random(self) -> int:
+        """The kernel clock of RNG (8.7.21, RNGSEL)."""
+        hsi48 = HSI48 if self.read(CR) >> 13 & 1 else 0
+        return (hsi48, self.pll(1, "q"), 32_768, LSI)[self.registers.get(D2CCIP2R, 0) >> 8 & 3]
 
     @property
     def scale(self) -> int:

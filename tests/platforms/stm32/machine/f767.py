@@ -20,6 +20,7 @@ from .flash import Block as FlashBlock
 from .flash import Surroundings as FlashSurroundings
 from .gpio import MODER, Port
 from .machine import FLASH, FLASH_SIZE, SYSTEM, Machine
+from .rng import Rng
 from .timers import KINDS, Timer
 from .uart import KINDS as UART_KINDS
 from .uart import Uart
@@ -30,6 +31,7 @@ from .watchdog import Backup, Watchdog
 RCC, PWR, FLASH_REGISTERS, GPIO, PORTS = 0x40023800, 0x40007000, 0x40023C00, 0x40020000, "ABCDEFGHIJK"
 IWDG, RTC, DMA_BASES = 0x40003000, 0x40002800, (0x40026000, 0x40026400)
 USB, USB_INTERRUPT, AHB2ENR, OTGFSEN = 0x50000000, 67, 0x34, 7
+RNG, RNGEN = 0x50060800, 6
 ITCM, RAM, CACHED_RAM = (0x00000000, 0x4000), (0x20000000, 0x80000), (0x20020000, 0x60000)
 UNIQUE_ID, FLASH_KILOBYTES = 0x1FF0F420, 0x1FF0F442
 TRIGGERS = {
@@ -124,6 +126,11 @@ class ClocksOfF767(Clocks):
     def uart(self, apb: int) -> int:
         assert not self.registers.get(DCKCFGR2, 0) & 0xFFFF, "there is no model of other kernel clocks"
         return self.peripheral(apb)
+
+    @property
+    def random(self) -> int:
+        """Of RNG and of USB: CK48MSEL."""
+        return 0 if self.registers.get(DCKCFGR2, 0) >> 27 & 1 else self.pll(1, "q")
 
     @property
     def overdriven(self) -> bool:
@@ -325,6 +332,8 @@ class Stm32f767(Machine):
             lambda: self.clocks.enabled(APB1ENR, RTCEN), lambda: bool(self.clocks.power[PWR_CR1] & DBP)
         )
         self._place(RTC, self.backup)
+        self.rng = Rng(lambda: self.clocks.enabled(AHB2ENR, RNGEN), lambda: self.clocks.random)
+        self._place(RNG, self.rng)
         self.usb = Usb(self, self._usb_is_powered)
         self.usb.interrupt = USB_INTERRUPT
         self._place(USB, self.usb, FIFOS + 0x1000 * USB_ENDPOINTS)

@@ -35,6 +35,7 @@ from .gpio import Port
 from .image import Image
 from .nvic import FIRST
 from .processor import Processor
+from .rng import RNG, Rng
 from .system_control import SystemControl
 from .timers import Level, Timer
 from .uart import KINDS as UART_KINDS
@@ -165,6 +166,10 @@ class Machine:
             lambda: bool(self.clocks.power[clock_registers.PWR_CR1] & clock_registers.DBP),
         )
         self._place(RTC, self.backup)
+        self.rng = Rng(
+            lambda: self.clocks.enabled(clock_registers.AHB2ENR, clock_registers.RNGEN), lambda: self.clocks.random
+        )
+        self._place(RNG, self.rng)
         self.usb = Usb(self, self._usb_is_powered)
         self._place(USB_BASE, self.usb, FIFOS + 0x1000 * USB_ENDPOINTS)
 

@@ -13,6 +13,7 @@
 
 #include "epg/target.h"
 #include "jiwy.h"
+#include "worn.h"
 
 #define SECONDS 3
 #define CYCLES_PER_SECOND 1000
@@ -39,6 +40,34 @@ ZTEST(jiwy, test_cycles)
 	zassert_equal(second.statistics.overruns, 0);
 	zassert_true(second.enabled, "disabled by fault %d of component %d", second.fault,
 		     second.fault_component);
+}
+
+#define RUN 50
+
+static void run_worn(double *outputs)
+{
+	worn_t *model = worn_instance(0);
+	worn_inputs_t in = {0};
+	worn_outputs_t out;
+
+	worn_init(model, &in, &out);
+	for (int k = 0; k < RUN; k++) {
+		worn_step(model, &in, &out);
+		outputs[k] = out.worn;
+	}
+}
+
+/* The model never resets its variables, which Zephyr's linker script places: EPG does. */
+ZTEST(jiwy, test_a_model_starts_again)
+{
+	static double first[RUN], second[RUN];
+
+	run_worn(first);
+	zassert_true(first[0] > 0.0 && first[0] < first[RUN - 1]);
+	for (int turn = 0; turn < 2; turn++) {
+		run_worn(second);
+		zassert_mem_equal(first, second, sizeof(first));
+	}
 }
 
 #if DT_HAS_COMPAT_STATUS_OKAY(epg_qdec_emul)

@@ -51,7 +51,7 @@ static void fill(uint32_t seed, size_t size)
 static bool store(uint32_t seed, size_t size)
 {
 	fill(seed, size);
-	return epg_port_store_write(data, size);
+	return epg_port_store_write(data, size) == NULL;
 }
 
 static bool holds_what_was_stored(uint32_t seed, size_t size)

@@ -6,8 +6,8 @@
 #ifndef EPG_FAMILY_PORT_H
 #define EPG_FAMILY_PORT_H
 
-#include "../../src/sdk.h"
 #include "epg/pico.h"
+#include "epg/pico_sdk.h"
 #include "epg_pico_target.h"
 
 typedef epg_pico_target_t epg_family_target_t;

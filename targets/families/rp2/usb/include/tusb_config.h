@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Configuration of TinyUSB, and of EPG's USB device (platforms/mcu/usb/usb.h), for RP2040 and RP2350.
+ * Configuration of TinyUSB, and of EPG's USB device (`epg/usb.h`), for RP2040 and RP2350.
  *
  * Names and numbers come from definitions of the executable or from the target configuration (`communication: {usb:
  * ...}`, in epg_pico_target.h).  By default the numbers are those of the Pico SDK's own serial port, by which picotool
@@ -55,6 +55,6 @@
 #define EPG_USB_FAMILY_INTERFACE TUSB_CLASS_VENDOR_SPECIFIC, RESET_INTERFACE_SUBCLASS, RESET_INTERFACE_PROTOCOL
 #define EPG_USB_FAMILY_TITLE "Reset"
 
-#include "../../../../platforms/mcu/usb/config.h"
+#include "epg/usb_config.h"
 
 #endif

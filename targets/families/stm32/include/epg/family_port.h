@@ -6,8 +6,8 @@
 #ifndef EPG_FAMILY_PORT_H
 #define EPG_FAMILY_PORT_H
 
-#include "../../src/device.h"
 #include "epg/stm32.h"
+#include "epg/stm32_device.h"
 #include "epg_stm32_interrupts.h"
 #include "epg_stm32_target.h"
 

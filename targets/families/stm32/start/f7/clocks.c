@@ -8,8 +8,8 @@
  *
  * The timers of APB1 and APB2 have twice the clock of their bus (RM0410, RCC_DCKCFGR1, TIMPRE = 0).
  */
-#include "../../src/device.h"
 #include "../start.h"
+#include "epg/stm32_device.h"
 #include "epg_stm32_target.h"
 
 #include <stdbool.h>

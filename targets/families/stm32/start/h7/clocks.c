@@ -7,8 +7,8 @@
  *
  * The timers of an APB that divides by 2 have the clock of the AHB (RM0433, 8.5.6).
  */
-#include "../../src/device.h"
 #include "../start.h"
+#include "epg/stm32_device.h"
 #include "epg_stm32_target.h"
 
 #include <stdbool.h>

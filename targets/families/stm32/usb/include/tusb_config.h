@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Configuration of TinyUSB, and of EPG's USB device (platforms/mcu/usb/usb.h), for STM32.
+ * Configuration of TinyUSB, and of EPG's USB device (`epg/usb.h`), for STM32.
  *
  * Names and numbers are in epg_stm32_target.h: those of the target configuration (`communication: {usb: ...}`), else
  * those of family.yaml.
@@ -11,7 +11,7 @@
 
 #pragma GCC system_header
 
-#include "../../src/device.h"
+#include "epg/stm32_device.h"
 #include "epg_stm32_target.h"
 
 #if defined(EPG_STM32_H7)
@@ -36,6 +36,6 @@
 uint32_t epg_stm32_clock_hz(const char *name);
 #define SystemCoreClock (epg_stm32_clock_hz("core"))
 
-#include "../../../../platforms/mcu/usb/config.h"
+#include "epg/usb_config.h"
 
 #endif

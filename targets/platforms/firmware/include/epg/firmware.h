@@ -80,7 +80,10 @@ typedef enum epg_firmware_state {
     EPG_FIRMWARE_SAFE      /**< epg_firmware_safe() has ended the run: only a reset starts it again */
 } epg_firmware_state_t;
 
-/** `<name>_start()`: starts components and communication.  Ticks before it do nothing.  False if it runs already. */
+/**
+ * `<name>_start()`: starts components and communication.  Ticks before it do nothing.  Returns false if the target runs
+ * already, or if a stream cannot start; then it can be called again.
+ */
 bool epg_firmware_start(const epg_firmware_target_t *firmware);
 
 /**

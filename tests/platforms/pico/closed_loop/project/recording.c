@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* EPG adds this prefix to the names of a model's own variables. */
-extern double jiwy_replay_plant_private_replay_angles[1000000][2];
+extern double recorded_angles[1000000][2];
+double recorded_angles[1000000][2];
 
 static void __attribute__((constructor)) read_recording(void)
 {
@@ -18,7 +18,7 @@ static void __attribute__((constructor)) read_recording(void)
         exit(1);
     }
     size_t count = 0;
-    double(*angles)[2] = jiwy_replay_plant_private_replay_angles;
+    double(*angles)[2] = recorded_angles;
     while (count < 1000000 && fscanf(file, "%lf %lf", &angles[count][0], &angles[count][1]) == 2) {
         count++;
     }

@@ -30,6 +30,8 @@ uint16_t encoder_count(void);
 uint32_t microseconds(void);
 void tick_acknowledge(void);
 
+uint32_t random_number(void); /* takes 2 us; 0 if the generator has failed */
+
 void MX_USART3_UART_Init(void);
 size_t serial_read(void *data, size_t size);
 size_t serial_write(const void *data, size_t size);

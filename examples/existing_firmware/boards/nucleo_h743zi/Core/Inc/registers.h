@@ -7,6 +7,8 @@
 #define REGISTER(address) (*(volatile uint32_t *)(address))
 
 /* Reset and clock control: RM0433, section 8.7 */
+#define RCC_CR REGISTER(0x58024400u)
+#define RCC_AHB2ENR REGISTER(0x580244DCu)
 #define RCC_AHB4ENR REGISTER(0x580244E0u)
 #define RCC_APB1LENR REGISTER(0x580244E8u)
 #define RCC_APB2ENR REGISTER(0x580244F0u)
@@ -34,6 +36,12 @@ typedef struct usart {
     volatile uint32_t cr1, cr2, cr3, brr, gtpr, rtor, rqr, isr, icr, rdr, tdr, presc;
 } usart_t;
 #define USART3 ((usart_t *)0x40004800u)
+
+/* Random number generator: section 34.7 */
+typedef struct rng {
+    volatile uint32_t cr, sr, dr;
+} rng_t;
+#define RNG ((rng_t *)0x48021800u)
 
 /* Interrupt controller: PM0253, section 4.2. One byte of priority per interrupt, of which the upper four bits count. */
 #define NVIC_ISER ((volatile uint32_t *)0xE000E100u)

@@ -12,7 +12,7 @@ function(_epg_mps2_check name result)
 endfunction()
 
 function(_epg_mps2_library library)
-  include("${EPG_TARGETS_DIR}/platforms/mcu/one_core/one_core.cmake")
+  include("${EPG_TARGETS_DIR}/mcu/one_core/one_core.cmake")
   _epg_one_core_library(${library})
   _epg_find_sdk(core cmsis_core)
   target_include_directories(${library} SYSTEM INTERFACE "${core}/CMSIS/Core/Include")

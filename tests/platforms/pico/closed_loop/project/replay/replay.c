@@ -1,14 +1,14 @@
 #include "replay.h"
 
-/* Angles in rad, one pair per control cycle; recording.c fills them in before main(). */
-double replay_angles[1000000][2];
+/* Angles in rad, one pair per control cycle.  recording.c has them: variables of a model begin anew with the model. */
+extern double recorded_angles[1000000][2];
 
 static size_t replay_cycle;
 
 static void show(replay_outputs_t *outputs)
 {
-    outputs->angle_pan = replay_angles[replay_cycle][0];
-    outputs->angle_tilt = replay_angles[replay_cycle][1];
+    outputs->angle_pan = recorded_angles[replay_cycle][0];
+    outputs->angle_tilt = recorded_angles[replay_cycle][1];
 }
 
 void replay_init(const replay_inputs_t *inputs, replay_outputs_t *outputs)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The functions that programs call, the main stack, the serial number, and a store in memory that no reset clears.
+ * The functions that programs call, the main stack, the serial number, the number of a start, and a store in memory that no reset clears.
  */
 #include "epg/mps2.h"
 
@@ -38,6 +38,15 @@ bool epg_mps2_stop(void)
 const char *epg_port_serial(void)
 {
     return "1";
+}
+
+uint32_t epg_port_boot_id(void)
+{
+    static NOT_CLEARED uint32_t starts; /* QEMU's memory begins with zeros */
+    static bool counted;
+    starts += counted ? 0U : 1U;
+    counted = true;
+    return starts;
 }
 
 size_t epg_sectors_capacity(void)

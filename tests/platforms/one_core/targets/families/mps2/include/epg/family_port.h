@@ -6,8 +6,8 @@
 #ifndef EPG_FAMILY_PORT_H
 #define EPG_FAMILY_PORT_H
 
-#include "../../src/device.h"
 #include "epg/mps2.h"
+#include "epg/mps2_device.h"
 #include "epg/one_core_port.h"
 #include "epg_mps2_target.h"
 
