@@ -96,9 +96,8 @@ def differing_cycles(comparison: Comparison) -> int:
 
 def draw(comparison: Comparison) -> None:
     """Draws the run of an image, in the same way as `epg simulate`."""
-    trackings = comparison.tracking({name: array("d", values) for name, values in comparison.image.columns.items()})
-    diagnostics = Diagnostics()
-    if not plot(trackings, PLOT, diagnostics):
+    columns = {name: array("d", values) for name, values in comparison.image.columns.items()}
+    if not plot(comparison.tracking(columns), comparison.windows(columns), PLOT, Diagnostics()):
         raise SystemExit("matplotlib is not installed: python3 -m pip install matplotlib")
     print(f"wrote {PLOT}")
 

@@ -63,8 +63,8 @@ def check_class(node: YamlNode, diagnostics: Diagnostics) -> None:
 
 
 def check_names(node: YamlNode, chips: Collection[str], layers: Collection[str], diagnostics: Diagnostics) -> None:
-    """Reports chips, platforms and families of a ``class.yaml`` that do not exist."""
-    for key, what, known in (("chips", "chip", chips), ("ports", "platform or family", layers)):
+    """Reports chips of a ``class.yaml`` that do not exist, and port layers that are none of the ``layers``."""
+    for key, what, known in (("chips", "chip", chips), ("ports", "port layer", layers)):
         for name in map_of(node, key):
             span, message = node[key].key_span(name), f"there is no {what} '{name}'"
             diagnostics.known_or_error("unknown-name", span, message, name, known, "known")

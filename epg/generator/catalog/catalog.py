@@ -239,7 +239,12 @@ class Catalog:
         """Reports the mistakes in the file of the item ``name``."""
         right = check_file(category, node, name, self.names("platform"), mistakes)
         if right and category == "class":
-            check_names(node, self.names("soc"), self.names("platform") + self.names("family"), mistakes)
+            check_names(node, self.names("soc"), [*self._own_layers(), *self.names("family")], mistakes)
+
+    def _own_layers(self) -> list[str]:
+        """The platforms whose port layer is not that of a family of chips."""
+        platforms = {name: self._item("platform", name, make_platform) for name in self.names("platform")}
+        return [name for name, platform in platforms.items() if platform is None or not platform.by_family]
 
     def _with_extended(self, category: str, node: YamlNode) -> YamlNode | None:
         """The file of an item with the values of the items that it extends; None after reporting mistakes."""
