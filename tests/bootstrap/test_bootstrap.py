@@ -10,7 +10,10 @@ import venv
 import zipfile
 from pathlib import Path
 
+import jinja2
+import jsonschema
 import pytest
+import yaml
 
 from epg.generator import bootstrap
 from tests.cmake.project import ROOT, Project
@@ -51,8 +54,10 @@ def test_packages_are_installed_once_and_found_again(bare_python: Path, tmp_path
 
 def test_a_python_whose_path_is_in_a_file_keeps_its_library() -> None:
     """With a file `._pth`, Python does not put the folder of the started file before the library."""
+    packages = {str(Path(module.__file__).parents[1]) for module in (jinja2, jsonschema, yaml)}
     started = (
         "import runpy, sys; sys.path[:] = [p for p in sys.path if p and 'site-packages' not in p];"
+        f"sys.path += {sorted(packages)!r};"
         f"sys.path.sort(key=lambda p: not p.endswith('python%d.%d' % sys.version_info[:2]));"
         f"sys.argv = ['epg', '--version']; runpy.run_path({EPG[0]!r}, run_name='__main__')"
     )

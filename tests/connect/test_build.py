@@ -25,7 +25,7 @@ from epg.generator.diagnostics import Diagnostics
 from epg.generator.tools.tools import load_tools
 from epg.new.new_project import ProjectRequest, write_project
 from tests.connect.builds import job_of, processes, run
-from tests.emulator.toolchain import arm_gcc, skip_if_missing
+from tests.emulator.toolchain import arm_gcc, pico_sdk, skip_if_missing
 from tests.waiting import until
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -413,6 +413,7 @@ def test_long_output_is_bounded(robot: Path, monkeypatch: pytest.MonkeyPatch) ->
 def test_a_folder_where_the_first_try_failed_takes_the_epg_that_runs_too(
     pico: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    skip_if_missing(arm_gcc, pico_sdk)
     monkeypatch.delenv("EPG_PATH", raising=False)
     monkeypatch.delenv("EPG_DIR", raising=False)
     text = (pico / "CMakeLists.txt").read_text()

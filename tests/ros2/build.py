@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from tests.cmake.built import build, configured
-from tests.emulator.toolchain import tool
+from tests.emulator.toolchain import Missing, skip_if_missing, tool
 
 HERE = Path(__file__).resolve().parent
 
@@ -16,13 +16,27 @@ Build = Callable[[str], Path]
 
 
 def build_robots(folder: Path, flags: str) -> Build:
-    """Configures once; a target is built when it is first requested.  Raises Missing."""
+    """Configures once; a target is built when it is first requested.  Raises Missing.
+
+    A test that requests a target with an agent is skipped where the client for agents is missing.
+    """
     tool("cyclonedds")
-    options = [f"-DCMAKE_C_FLAGS={flags}", f"-DCMAKE_CXX_FLAGS={flags}"]
+    with_agent = _is_there("micro_xrce_dds_client") and _is_there("micro_cdr")
+    options = [f"-DCMAKE_C_FLAGS={flags}", f"-DCMAKE_CXX_FLAGS={flags}", f"-DWITH_AGENT={with_agent}"]
     configured(HERE / "robots", folder, *options)
 
     def build_one(target: str) -> Path:
+        if target.startswith("agent_"):
+            skip_if_missing(lambda: tool("micro_xrce_dds_client"), lambda: tool("micro_cdr"))
         build(folder, f"{target}_host")
         return folder / f"{target}_host"
 
     return build_one
+
+
+def _is_there(name: str) -> bool:
+    try:
+        tool(name)
+    except Missing:
+        return False
+    return True
