@@ -13,7 +13,7 @@ from pathlib import Path
 from measure import need
 from report import Table, arguments, command_line, show
 
-from tests.emulator.toolchain import tool
+from tests.doubles.toolchain import tool
 from tests.platforms.firmware.builds import HERE, PROCESSORS, build
 
 MIDDLEWARES = {"none": "none", "console": "console", "xrce": "xrce and console"}

@@ -26,7 +26,7 @@ sys.path.insert(0, str(ROOT))
 
 def need(*tools: Callable[[], object]) -> None:
     """Ends the program with a message if one of ``tools``, which search a tool for the tests, does not find it."""
-    from tests.emulator.toolchain import Missing  # not at the top: other benchmarks run without the tests
+    from tests.doubles.toolchain import Missing  # not at the top: other benchmarks run without the tests
 
     try:
         for tool in tools:

@@ -22,7 +22,7 @@ from report import Table, arguments, command_line, show
 from epg.generator.diagnostics import Diagnostics
 from epg.runs.scenario import Profile, Scenario
 from epg.simulate.load_scenario import load_scenario
-from tests.emulator.toolchain import Missing
+from tests.doubles.toolchain import Missing
 from tests.ros2.build import Build, build_robots
 from tests.ros2.correlation import errors, fine_lag, lag
 from tests.ros2.network import network

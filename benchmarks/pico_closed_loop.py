@@ -18,7 +18,7 @@ from report import Table, arguments, command_line, show
 from epg.generator.diagnostics import Diagnostics
 from epg.runs.tracking import WindowResult
 from epg.simulate.plot import plot
-from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js
+from tests.doubles.toolchain import arm_gcc, node, pico_sdk, rp2040js
 from tests.platforms.pico.closed_loop.comparison import CONTROL, Comparison, compare
 from tests.platforms.pico.closed_loop.robot import AXES
 from tests.platforms.pico.images import PLATFORMS, freertos_kernel

@@ -15,8 +15,8 @@ from pathlib import Path
 from measure import need
 from report import Table, arguments, command_line, show
 
-from tests.emulator.emulator import Emulator
-from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js
+from tests.doubles.rp2040.emulator import Emulator
+from tests.doubles.toolchain import arm_gcc, node, pico_sdk, rp2040js
 from tests.platforms.pico.images import freertos_kernel, images, ram_of, size_of
 from tests.platforms.pico.micro_ros.firmware import VARIABLE
 from tests.platforms.pico.micro_ros.firmware import firmware as micro_ros_firmware

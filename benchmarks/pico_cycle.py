@@ -18,13 +18,13 @@ from statistics import fmean
 from measure import ROOT, need
 from report import Table, arguments, command_line, show
 
-from tests.emulator.build import build
-from tests.emulator.emulator import Emulator
-from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js, unicorn
+from tests.doubles.rp2040.build import build
+from tests.doubles.rp2040.emulator import Emulator
+from tests.doubles.rp2350.cortex_m33 import COMPILER_ARITHMETIC, RETURN, Processor
+from tests.doubles.toolchain import arm_gcc, node, pico_sdk, rp2040js, unicorn
 from tests.platforms.pico.closed_loop.recording import INPUTS
 from tests.platforms.pico.closed_loop.robot import AXES, connect
 from tests.platforms.pico.images import freertos_kernel, size_of
-from tests.platforms.pico.rp2350.cortex_m33 import COMPILER_ARITHMETIC, RETURN, Processor
 from tests.platforms.pico.rp2350.profile import cycles, start
 from tests.platforms.pico.timing.programs import PROJECT, Program, by_hand, generated
 

@@ -11,10 +11,10 @@ from __future__ import annotations
 from measure import need
 from report import Table, arguments, command_line, show
 
-from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js
+from tests.doubles.toolchain import arm_gcc, node, pico_sdk, rp2040js
+from tests.doubles.xrce_agent.bare import libraries
 from tests.platforms.pico.images import freertos_kernel
 from tests.platforms.pico.ping_pong.round_trip import COMBINATIONS, Board, head, programs, rows, summarise
-from tests.xrce_agent.bare import libraries
 
 SHOWN = (0, 2, 3, 6, 7, 8, 10)
 """The columns of the example's table that the page has: label, lost, mean, minimum, maximum, median, 99 %."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 from measure import need
 from report import Table, arguments, command_line, show
 
-from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js
+from tests.doubles.toolchain import arm_gcc, node, pico_sdk, rp2040js
 from tests.platforms.pico.images import freertos_kernel
 from tests.platforms.pico.polls.measure import Polls, measure_uart, measure_usb
 

@@ -15,9 +15,9 @@ from pathlib import Path
 from measure import need
 from report import Table, arguments, command_line, show
 
-from tests.emulator.build import build
-from tests.emulator.emulator import Emulator
-from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js, tool
+from tests.doubles.rp2040.build import build
+from tests.doubles.rp2040.emulator import Emulator
+from tests.doubles.toolchain import arm_gcc, node, pico_sdk, rp2040js, tool
 from tests.platforms.pico.images import images, size_of
 from tests.platforms.pico.xrce.agent import BoardAgent
 

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from measure import need
 from report import Table, arguments, command_line, show
 
-from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js
+from tests.doubles.toolchain import arm_gcc, node, pico_sdk, rp2040js
 from tests.platforms.pico.images import freertos_kernel
 from tests.platforms.pico.timing.many import measure_many
 from tests.platforms.pico.timing.measure import LOADS, Load, Timing

@@ -19,12 +19,12 @@ from pathlib import Path
 from measure import ROOT, need, run
 from report import Table, arguments, command_line, show
 
-from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js
+from tests.doubles.toolchain import arm_gcc, node, pico_sdk, rp2040js
+from tests.doubles.xrce_agent.bare import libraries
 from tests.middlewares.xrce import latency as host
+from tests.middlewares.xrce.steps import DELAYS, PERIOD, PROJECT, Step, executable
 from tests.platforms.pico.images import freertos_kernel
 from tests.platforms.pico.xrce import latency as pico
-from tests.xrce_agent.bare import libraries
-from tests.xrce_agent.latency import DELAYS, PERIOD, PROJECT, Step, executable
 
 PLATFORMS = {"bare_metal": "Pico, bare metal, USB", "freertos": "Pico, FreeRTOS, USB"}
 HEAD = ["target", "output delay", "steps", "in the next cycle", "min", "mean", "median", "99%", "max",

@@ -18,11 +18,11 @@ from typing import Any
 from measure import ROOT, need
 from report import Table, arguments, command_line, show
 
-from tests.emulator.toolchain import arm_gcc, tool, unicorn
+from tests.doubles.stm32.machine import Machine
+from tests.doubles.stm32.nvic import FIRST
+from tests.doubles.toolchain import arm_gcc, tool, unicorn
 from tests.platforms.firmware.builds import PROCESSORS, build
 from tests.platforms.stm32.images import PARTS
-from tests.platforms.stm32.machine.machine import Machine
-from tests.platforms.stm32.machine.nvic import FIRST
 
 PROJECT = Path(__file__).resolve().parent / "stm32"
 BORDER = 1.2

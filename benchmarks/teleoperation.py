@@ -16,12 +16,12 @@ from pathlib import Path
 from measure import need
 from report import Table, arguments, command_line, show
 
-from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js
+from tests.doubles.toolchain import arm_gcc, node, pico_sdk, rp2040js
+from tests.doubles.xrce_agent.bare import libraries
 from tests.platforms.pico.closed_loop.robot import AXES
 from tests.platforms.pico.images import freertos_kernel
 from tests.platforms.pico.teleoperation.lags import Run, emulated, programs, simulated, simulators
 from tests.platforms.pico.teleoperation.system import DELAY
-from tests.xrce_agent.bare import libraries
 
 HEAD = ["axis", "lag", "two Picos", "simulation, 1 ms", "ratio", "simulation, 2 to 2.5 ms", "ratio"]
 

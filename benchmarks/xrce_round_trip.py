@@ -27,11 +27,11 @@ sys.path.insert(0, str(ROOT / "examples" / "ping_pong" / "peer"))
 
 from summary import Run, Summary, summarise
 
-from tests.emulator.toolchain import Missing
-from tests.xrce_agent import Agent, UdpLink, float64, read_float64
-from tests.xrce_agent.bare import bare_client
-from tests.xrce_agent.real_agent import RealAgent, on_loopback, program
-from tests.xrce_agent.topics import Endpoint as Writer
+from tests.doubles.toolchain import Missing
+from tests.doubles.xrce_agent import Agent, UdpLink, float64, read_float64
+from tests.doubles.xrce_agent.bare import bare_client
+from tests.doubles.xrce_agent.real_agent import RealAgent, on_loopback, program
+from tests.doubles.xrce_agent.topics import Endpoint as Writer
 
 EXAMPLE = ROOT / "examples" / "ping_pong"
 QOS = {"best effort": "best", "reliable": "default"}

@@ -23,7 +23,7 @@ from pathlib import Path
 from measure import JIWY, ROOT
 from report import Table, arguments, command_line, milliseconds, show
 
-from tests.emulator.toolchain import Missing, arm_gcc
+from tests.doubles.toolchain import Missing, arm_gcc
 from tests.zephyr.workspace import Workspace, build, c_library, run, workspace
 
 BOARDS = ("rpi_pico", "nucleo_h743zi", "rpi_pico2/rp2350a/m33")

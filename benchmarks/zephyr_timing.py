@@ -19,7 +19,7 @@ from measure import need
 from pico_timing import extent, verdict
 from report import Table, arguments, command_line, show
 
-from tests.emulator.toolchain import arm_gcc, node, rp2040js, tool
+from tests.doubles.toolchain import arm_gcc, node, rp2040js, tool
 from tests.platforms.pico.closed_loop.robot import PERIOD
 from tests.platforms.pico.timing.measure import Timing
 from tests.platforms.pico.xrce.board import AGENT_PORT, CONSOLE_PORT

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from tests.connect.browser.conftest import NAMES
-from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js, skip_if_missing, tool, unicorn
+from tests.doubles.toolchain import arm_gcc, node, pico_sdk, rp2040js, skip_if_missing, tool, unicorn
 from tests.platforms.firmware.builds import PROCESSORS
 from tests.platforms.stm32.images import PARTS
 

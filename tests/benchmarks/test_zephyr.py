@@ -8,7 +8,7 @@ import subprocess
 import sys
 from functools import partial
 
-from tests.emulator.toolchain import ROOT, arm_gcc, node, rp2040js, skip_if_missing, tool
+from tests.doubles.toolchain import ROOT, arm_gcc, node, rp2040js, skip_if_missing, tool
 from tests.zephyr.workspace import c_library, workspace
 
 

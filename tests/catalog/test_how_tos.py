@@ -18,7 +18,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import arm_gcc, pico_sdk, skip_if_missing, tool
+from tests.doubles.toolchain import arm_gcc, pico_sdk, skip_if_missing, tool
 from tests.middlewares.client import Host
 from tests.middlewares.test_console_docs import hold
 from tests.zephyr.workspace import c_library, workspace

@@ -6,23 +6,15 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from tests.emulator.toolchain import Missing, skip_if_missing
+from tests.doubles.toolchain import cmake_and_ninja, skip_if_missing
 
 SANITIZERS = "-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all"
 """Options of the compiler."""
-
-
-def cmake_and_ninja() -> None:
-    """Raises :class:`Missing` if one of them is not installed."""
-    for program, package in (("cmake", "cmake"), ("ninja", "ninja-build")):
-        if not shutil.which(program):
-            raise Missing(f"{program} is not installed: sudo apt install {package}")
 
 
 def configured(project: Path, folder: Path, *options: str) -> Path:

@@ -21,7 +21,7 @@ from pathlib import Path
 import pytest
 
 from tests.cmake.project import NINJA, ROOT, Project, compiled
-from tests.models.exports import Export
+from tests.doubles.twenty_sim.exports import Export
 from tests.models.fmus import FMU2, FMU3, pack
 
 pytestmark = pytest.mark.skipif(not NINJA, reason="Ninja is not installed: sudo apt install ninja-build")

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests.cmake.project import NINJA, ROOT, Project, snapshot
-from tests.models.exports import Export
+from tests.doubles.twenty_sim.exports import Export
 
 SITECUSTOMIZE = 'import os\nwith open(os.environ["PYTHON_STARTS"], "a") as log:\n    log.write("start\\n")\n'
 

@@ -25,7 +25,7 @@ from epg.generator.diagnostics import Diagnostics
 from epg.generator.tools.tools import load_tools
 from epg.new.new_project import ProjectRequest, write_project
 from tests.connect.builds import job_of, processes, run
-from tests.emulator.toolchain import arm_gcc, pico_sdk, skip_if_missing
+from tests.doubles.toolchain import arm_gcc, pico_sdk, skip_if_missing
 from tests.waiting import until
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -18,7 +18,7 @@ from epg.generator.diagnostics import Diagnostics
 from epg.generator.project import load_configuration
 from epg.new.new_project import ProjectRequest, write_project
 from tests.connect.builds import job_of, run
-from tests.emulator.toolchain import arm_gcc, pico_sdk, skip_if_missing
+from tests.doubles.toolchain import arm_gcc, pico_sdk, skip_if_missing
 from tests.zephyr.workspace import NATIVE, Missing, workspace
 
 MODEL = Path(__file__).resolve().parents[2] / "examples/jiwy/model"

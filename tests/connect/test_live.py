@@ -25,7 +25,7 @@ from epg.connect.server import SECRET
 from epg.generator.diagnostics import Diagnostics
 from epg.new.new_project import ProjectRequest, write_project
 from tests.connect.page import Denied, Page, serving, session_of
-from tests.live import bridge
+from tests.doubles.network import bridge
 from tests.live.target import LATE, LEASE, Target, check_every_cycle_has_a_row, client_of
 from tests.live.udp_target import UdpTarget
 from tests.waiting import until

@@ -23,7 +23,7 @@ from epg.generator.project import load_configuration
 from epg.new.new_project import ProjectRequest, new_project, write_project
 from tests.connect.conftest import ROOT, one_axis_project
 from tests.connect.page import session_of
-from tests.emulator.toolchain import arm_gcc, pico_sdk, skip_if_missing
+from tests.doubles.toolchain import arm_gcc, pico_sdk, skip_if_missing
 
 TCF = """# my axis
 version: 1

@@ -11,7 +11,7 @@ import pytest
 import epg
 
 ROOT = Path(__file__).resolve().parents[2]
-FOLDERS = ("docs", "examples", "integration", "zephyr_module", "tests/xrce_agent", "tests/emulator")
+FOLDERS = ("docs", "examples", "integration", "zephyr_module", "tests/doubles/xrce_agent", "tests/doubles/rp2040")
 PAGES = sorted([*ROOT.glob("*.md"), *(page for folder in FOLDERS for page in (ROOT / folder).rglob("*.md"))])
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 PICTURES = (".png", ".svg")

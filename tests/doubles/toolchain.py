@@ -28,7 +28,7 @@ from epg.generator.tools.find_tool import Surroundings, find_tool
 from epg.generator.tools.tools import load_tools
 
 ROOT = Path(__file__).resolve().parents[2]
-HERE = Path(__file__).resolve().parent
+RP2040 = Path(__file__).resolve().parent / "rp2040"
 OLDEST_NODE = 18
 UNICORN = "2.1.4"
 
@@ -70,6 +70,19 @@ def arm_gcc() -> Path:
     return tool("arm_gcc")
 
 
+def binutils(program: str, *arguments: str) -> str:
+    """The output of a program of the toolchain."""
+    path = arm_gcc().parent / f"arm-none-eabi-{program}"
+    return subprocess.run([path, *arguments], capture_output=True, text=True, check=True).stdout
+
+
+def cmake_and_ninja() -> None:
+    """Raises :class:`Missing` if one of them is not installed."""
+    for program, package in (("cmake", "cmake"), ("ninja", "ninja-build")):
+        if not shutil.which(program):
+            raise Missing(f"{program} is not installed: sudo apt install {package}")
+
+
 def node() -> str:
     """The program node."""
     program = shutil.which("node")
@@ -83,7 +96,7 @@ def node() -> str:
 
 def rp2040js() -> Path:
     """The folder of the npm package rp2040js."""
-    return npm_package(HERE, "rp2040js")
+    return npm_package(RP2040, "rp2040js")
 
 
 def npm_package(locked_by: Path, name: str) -> Path:
@@ -159,7 +172,7 @@ def pioasm() -> Path:
 
 def stand_in_rom() -> Path:
     """The ELF file of the boot ROM that EPG provides for the emulator, in place of the chip's own."""
-    sources = [HERE / "rom" / name for name in ("rom.S", "rom.c", "rom.ld")]
+    sources = [RP2040 / "rom" / name for name in ("rom.S", "rom.c", "rom.ld")]
     digest = hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()[:16]
     output = cache_folder() / "test-build" / f"stand-in-rom-{digest}.elf"
     with locked(output):

@@ -14,7 +14,7 @@ from pathlib import Path
 from epg.generator.data import targets_roots
 from epg.generator.diagnostics import Diagnostics
 from epg.generator.tools.tools import load_tools
-from tests.emulator.toolchain import Missing, arm_gcc, pico_sdk, skip_if_missing, tool
+from tests.doubles.toolchain import Missing, arm_gcc, pico_sdk, skip_if_missing, tool
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 

@@ -13,7 +13,7 @@ import pytest
 
 from epg.generator.diagnostics import Diagnostics
 from epg.generator.documents.ioc_file import read_ioc
-from tests.emulator.toolchain import arm_gcc, skip_if_missing, tool
+from tests.doubles.toolchain import arm_gcc, skip_if_missing, tool
 from tests.examples.pico_project import ROOT, environment
 
 EXAMPLE = ROOT / "examples/existing_cubemx_repository"

@@ -8,7 +8,7 @@ import shlex
 import shutil
 from pathlib import Path
 
-from tests.emulator.toolchain import pico_sdk
+from tests.doubles.toolchain import pico_sdk
 from tests.examples.pico_project import ROOT, commands, configure, digests, picotool, run, skip_unless_buildable
 
 EXAMPLE = ROOT / "examples/existing_pico_repository"

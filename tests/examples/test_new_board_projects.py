@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import arm_gcc, pico_sdk, skip_if_missing, tool
+from tests.doubles.toolchain import arm_gcc, pico_sdk, skip_if_missing, tool
 from tests.examples.pico_project import (
     configure,
     environment,

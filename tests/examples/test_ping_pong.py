@@ -17,16 +17,15 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("tests.ros2.packages", exc_type=ImportError)
+pytest.importorskip("tests.doubles.ros2_peer.packages", exc_type=ImportError)
 
 from epg.generator import bootstrap
-from tests.cmake.built import cmake_and_ninja
-from tests.emulator.toolchain import skip_if_missing, tool
+from tests.doubles.toolchain import cmake_and_ninja, skip_if_missing, tool
+from tests.doubles.xrce_agent import Agent, UdpLink
+from tests.doubles.xrce_agent.bare import libraries
+from tests.doubles.xrce_agent.dds_bridge import DdsBridge
 from tests.examples.pico_project import configure, run
 from tests.ros2.network import Network, network, running
-from tests.xrce_agent import Agent, UdpLink
-from tests.xrce_agent.bare import libraries
-from tests.xrce_agent.dds_bridge import DdsBridge
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples/ping_pong"
 PEER = EXAMPLE / "peer"

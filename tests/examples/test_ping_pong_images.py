@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import pico_sdk
+from tests.doubles.toolchain import pico_sdk
+from tests.doubles.xrce_agent.bare import libraries
 from tests.examples.pico_project import configure, freertos_kernel, picotool, run, skip_unless_buildable
-from tests.xrce_agent.bare import libraries
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples/ping_pong"
 

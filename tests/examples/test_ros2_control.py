@@ -15,15 +15,14 @@ from typing import Any
 import pytest
 import yaml
 
-pytest.importorskip("tests.ros2.packages", exc_type=ImportError)
+pytest.importorskip("tests.doubles.ros2_peer.packages", exc_type=ImportError)
 
 from epg.cli.main import main
-from tests.cmake.built import cmake_and_ninja
-from tests.emulator.toolchain import skip_if_missing, tool
+from tests.doubles.ros2_peer.messages import Bool_, DiagnosticArray_, JointState_
+from tests.doubles.ros2_peer.peer import Peer
+from tests.doubles.toolchain import cmake_and_ninja, skip_if_missing, tool
 from tests.examples.pico_project import configure, run
-from tests.ros2.messages import Bool_, DiagnosticArray_, JointState_
 from tests.ros2.network import Network, network, running
-from tests.ros2.peer import Peer
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples/ros2_control"
 JOINTS = {"jiwy": ["pan", "tilt"], "relbot": ["left", "right"]}

@@ -16,12 +16,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.doubles.twenty_sim.exports import Export
 from tests.fuzz.compiler import ROOT, compile_outputs, needs_compiler
 from tests.fuzz.long_run import PROFILE, examples
 from tests.fuzz.mutation import TEXT_MUTATIONS, YAML_MUTATIONS, mutated
 from tests.fuzz.project import Project, project_files
 from tests.fuzz.robots import ARGUMENTS, Robot, names, robots
-from tests.models.exports import Export
 
 WITH_PLANT = (*ARGUMENTS, "--plant", "plant", "--plant-bindings", "plant.bindings.yaml")
 MODEL_ALONE = ("--model", "model")

@@ -14,9 +14,9 @@ import pytest
 
 from epg.generator.diagnostics import Diagnostics
 from epg.generator.importers import load_model
+from tests.doubles.twenty_sim.exports import Export
 from tests.fuzz.long_run import LONG
 from tests.fuzz.project import TookTooLong, time_limit
-from tests.models.exports import Export
 
 SIZE = 1 << 20 if LONG else 1 << 15
 SECONDS = 2.0  # of processor time

@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 
 from tests.cmake.built import built
-from tests.emulator.toolchain import skip_if_missing
-from tests.xrce_agent.bare import libraries
+from tests.doubles.toolchain import skip_if_missing
+from tests.doubles.xrce_agent.bare import libraries
 
 PROJECT = Path(__file__).resolve().parent / "xrce"
 INPUTS = 20_000

@@ -175,8 +175,8 @@ def test_folders_whose_name_is_no_text(tmp_path: Path) -> None:
 @needs_compiler
 def test_what_is_seen_when_it_runs(tmp_path: Path) -> None:
     """The header of a trace contains the port names exactly as in 20-sim."""
+    from tests.doubles.twenty_sim.exports import Export
     from tests.fuzz.test_files import export
-    from tests.models.exports import Export
 
     assert Export().inputs[0][0] == "in"
     strange = 'PID1\\a"b %s ${x} é'

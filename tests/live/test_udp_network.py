@@ -18,9 +18,9 @@ import pytest
 from epg.live.client import CommandRefused, Lost, Rows
 from epg.live.port import PortError
 from epg.live.rows import Stream
+from tests.doubles.network.relay import LATE
 from tests.waiting import until
 
-from .relay import LATE
 from .target import begin_of, client_of, let_pass, tick_of
 from .test_live import ROOT, start, stopped
 from .udp_target import Trace, UdpTarget
@@ -42,7 +42,7 @@ def target(jiwy_host: Path, tmp_path: Path) -> Iterator[UdpTarget]:
 @pytest.fixture
 def bad(target: UdpTarget) -> Iterator[Path]:
     """The port of a relay that loses 20 % of the datagrams, and repeats 20 %."""
-    command = [sys.executable, "-m", "tests.live.relay", str(target.number), "0.2", "0.2"]
+    command = [sys.executable, "-m", "tests.doubles.network.relay", str(target.number), "0.2", "0.2"]
     with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True) as relay:
         assert relay.stdout is not None
         yield Path(f"udp:{int(relay.stdout.readline())}")
@@ -157,7 +157,7 @@ def test_a_lease_holds_or_ends_safely(target: UdpTarget, bad: Path) -> None:
 
 
 def test_a_network_that_loses_everything_is_noticed(target: UdpTarget) -> None:
-    command = [sys.executable, "-m", "tests.live.relay", str(target.number), "0", "0"]
+    command = [sys.executable, "-m", "tests.doubles.network.relay", str(target.number), "0", "0"]
     told: list[str] = []
     with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True) as relay:
         assert relay.stdout is not None

@@ -14,7 +14,7 @@ from epg.generator.messages.definition import FieldType, Message, parse_message
 from epg.generator.messages.library import Library, complete_definition
 from epg.generator.messages.type_hash import type_hash
 from epg.generator.source import Span
-from tests.ros2 import definitions
+from tests.doubles.ros2_peer import definitions
 
 
 def loaded(*names: str, folders: tuple[Path, ...] = ()) -> Library:

@@ -35,8 +35,7 @@ program = _runtime_tests()
 def programs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """The test programs, by name."""
     folder = tmp_path_factory.mktemp("console")
-    fakes = [program.SOURCES / "fake_port.c", program.SOURCES / "fake_application.c"]
-    sources = [HERE / "console_bench.c", *fakes, *sorted(CONSOLE.glob("*.c")), *program.runtime_sources()]
+    sources = [HERE / "console_bench.c", *program.FAKES, *sorted(CONSOLE.glob("*.c")), *program.runtime_sources()]
     includes = [CONSOLE, HERE]
     shared = program.compile_objects(folder / "shared", sources, includes=includes)
     return {

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from epg.generator.importers.c_function.c_function_export import CFunctionExport
-from tests.models.exports import Export
+from tests.doubles.twenty_sim.exports import Export
 from tests.models.harness import load, loaded
 
 PORTS = (["in", "position"], ["corr", "out"])

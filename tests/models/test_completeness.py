@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.models.exports import Export
+from tests.doubles.twenty_sim.exports import Export
 from tests.models.harness import load
 
 VARIABLES = ("xx_time", "xx_steps", "xx_initialize", "xx_major", "xx_stop_simulation", "xx_I", "xx_V", "xx_s", "xx_R")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from epg.generator.diagnostics import Diagnostic
-from tests.models.exports import Export
+from tests.doubles.twenty_sim.exports import Export
 from tests.models.harness import load
 
 WARNING = (

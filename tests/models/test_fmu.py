@@ -19,7 +19,7 @@ import yaml
 from epg.generator.documents.source_file import SourceFile
 from epg.generator.importers.fmu.fmu_export import FmuExport
 from epg.generator.models.c_code import CFile, parse_code
-from tests.models.exports import Export
+from tests.doubles.twenty_sim.exports import Export
 from tests.models.fmus import FMU2, FMU3, changed, pack
 from tests.models.harness import HAVE_COMPILER, build, load, loaded, run_wrapper
 

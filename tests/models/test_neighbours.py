@@ -10,7 +10,7 @@ import pytest
 
 from epg.generator.diagnostics import Diagnostic
 from epg.generator.models import neighbours
-from tests.models.exports import Export
+from tests.doubles.twenty_sim.exports import Export
 from tests.models.harness import HAVE_COMPILER, build, load, loaded, run_wrapper
 
 SHARED_C = ("xxtypes.h", "xxfuncs.h", "xxfuncs.c", "xxinteg.h", "xxinteg.c")

@@ -10,7 +10,7 @@ import pytest
 from epg.generator.diagnostics import Diagnostics
 from epg.generator.importers import load_model
 from epg.generator.source import Span
-from tests.models.exports import Export
+from tests.doubles.twenty_sim.exports import Export
 from tests.models.harness import load
 
 

@@ -16,11 +16,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import ROOT, arm_gcc, skip_if_missing
+from tests.doubles.toolchain import ROOT, arm_gcc, binutils, skip_if_missing
 from tests.platforms.firmware.builds import HERE as FIRMWARE
 from tests.platforms.firmware.builds import PROCESSORS, build
 from tests.platforms.firmware.test_builds import XRCE
-from tests.platforms.pico.images import PLATFORMS, binutils, images, skip_unless_buildable
+from tests.platforms.pico.images import PLATFORMS, images, skip_unless_buildable
 
 CALL = re.compile(r"\b__(?:atomic|sync)_\w+")
 EXCLUSIVE = re.compile(r"\b(?:ldrex|strex|ldaex|stlex)\w*\b")

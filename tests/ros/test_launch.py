@@ -19,7 +19,7 @@ from epg.cli.main import main
 from epg.generator.data import targets_roots
 from epg.ros.systemd_units import device_unit
 from epg.runs.robot import USB_NAMES
-from tests.emulator.toolchain import ROOT
+from tests.doubles.toolchain import ROOT
 
 from .description import write_description
 

@@ -19,7 +19,7 @@ from typing import Any
 
 import pytest
 
-pytest.importorskip("tests.ros2.packages", exc_type=ImportError)
+pytest.importorskip("tests.doubles.ros2_peer.packages", exc_type=ImportError)
 pytest.importorskip("rosbags", reason="rosbags is not installed: pip install -r epg/generator/lock/test_all.txt")
 pytest.importorskip("mcap", reason="mcap is not installed: pip install mcap")
 
@@ -31,7 +31,7 @@ from cyclonedds.util import duration
 from mcap.reader import make_reader
 
 from epg.cli.main import main
-from tests.ros2.definitions import type_hash
+from tests.doubles.ros2_peer.definitions import type_hash
 from tests.ros2.network import Network
 from tests.waiting import until
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("tests.ros2.packages", exc_type=ImportError)
+pytest.importorskip("tests.doubles.ros2_peer.packages", exc_type=ImportError)
 pytest.importorskip("rosbags", reason="rosbags is not installed: pip install -r epg/generator/lock/test_all.txt")
 
 from cyclonedds.domain import DomainParticipant
@@ -23,7 +23,7 @@ from epg.cli.main import main
 from epg.generator import bootstrap
 from epg.generator.messages.library import Library
 from epg.ros.dds_types import dds_type
-from tests.emulator.toolchain import Missing
+from tests.doubles.toolchain import Missing
 from tests.ros2.build import build_robots
 from tests.ros2.network import Network, running
 from tests.waiting import until

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from tests.cmake.built import build, configured
-from tests.emulator.toolchain import Missing, skip_if_missing, tool
+from tests.doubles.toolchain import Missing, skip_if_missing, tool
 
 HERE = Path(__file__).resolve().parent
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.emulator.toolchain import Missing
+from tests.doubles.toolchain import Missing
 from tests.ros2.build import Build, build_robots
 from tests.ros2.network import Network, network
 

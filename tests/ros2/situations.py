@@ -22,10 +22,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from epg.runs.scenario import Profile
+from tests.doubles.ros2_peer.messages import Float64_
+from tests.doubles.ros2_peer.peer import Peer, Publisher
 from tests.ros2.build import Build
-from tests.ros2.messages import Float64_
 from tests.ros2.network import Network, running
-from tests.ros2.peer import Peer, Publisher
 
 PERIOD = 0.033  # s, between two setpoints
 ATTEMPTS = 3

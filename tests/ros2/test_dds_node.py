@@ -21,14 +21,13 @@ from typing import Any
 
 import pytest
 
-pytest.importorskip("tests.ros2.packages", exc_type=ImportError)
+pytest.importorskip("tests.doubles.ros2_peer.packages", exc_type=ImportError)
 
 from cyclonedds.core import Policy
 from cyclonedds.util import duration
 
-from tests.ros2.build import Build
-from tests.ros2.definitions import type_hash
-from tests.ros2.messages import (
+from tests.doubles.ros2_peer.definitions import type_hash
+from tests.doubles.ros2_peer.messages import (
     Bool_,
     Clock_,
     DiagnosticArray_,
@@ -46,8 +45,9 @@ from tests.ros2.messages import (
     Time_,
     numbers,
 )
+from tests.doubles.ros2_peer.peer import Endpoint, Peer, Subscription
+from tests.ros2.build import Build
 from tests.ros2.network import Network, network, running
-from tests.ros2.peer import Endpoint, Peer, Subscription
 
 NODE = "/robot_7/JIWY_node"
 ROOT = Path(__file__).resolve().parents[2]
@@ -462,8 +462,8 @@ def test_messages_of_any_type(build_checked: Build, net: Network, tmp_path: Path
 
 FROZEN = """
 import sys
-from tests.ros2.messages import Float64_
-from tests.ros2.peer import Peer
+from tests.doubles.ros2_peer.messages import Float64_
+from tests.doubles.ros2_peer.peer import Peer
 
 with Peer(int(sys.argv[1]), "frozen") as peer:
     pan = peer.subscription("/robot_7/pan_publisher", Float64_)

@@ -10,12 +10,12 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("tests.ros2.packages", exc_type=ImportError)
+pytest.importorskip("tests.doubles.ros2_peer.packages", exc_type=ImportError)
 
+from tests.doubles.ros2_peer.messages import Bool_, DiagnosticArray_, Parameter_, ParameterEvent_, ParameterValue_
+from tests.doubles.ros2_peer.peer import Client, Peer, user_data
 from tests.ros2.build import Build
-from tests.ros2.messages import Bool_, DiagnosticArray_, Parameter_, ParameterEvent_, ParameterValue_
 from tests.ros2.network import Network
-from tests.ros2.peer import Client, Peer, user_data
 from tests.ros2.test_dds_node import NODE, diagnostics_of, jiwy, meet, meet_and_wait, robot
 
 __all__ = ["jiwy"]

@@ -10,9 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.ros2.build import HERE, Build
+from tests.ros2.build import Build
 from tests.ros2.network import network, running
 
+PEER = Path(__file__).resolve().parents[1] / "doubles" / "fastdds_peer"
 FLOAT64, BOOL = (
     "std_msgs::msg::dds_::Float64_ typehash=RIHS01_705ba9c3d1a09df43737eb67095534de36fd426c0587779bda2bc51fe790182a;",
     "std_msgs::msg::dds_::Bool_ typehash=RIHS01_feb91e995ff9ebd09c0cb3d2aed18b11077585839fb5db80193b62d74528f6c9;",
@@ -27,7 +28,7 @@ def fastdds_peer(tmp_path_factory: pytest.TempPathFactory) -> Path:
         pytest.skip("g++ is not installed: sudo apt install g++")
     folder = tmp_path_factory.mktemp("fastdds_peer")
     for command in (
-        ["cmake", "-S", str(HERE / "fastdds"), "-B", str(folder), "-G", "Ninja"],
+        ["cmake", "-S", str(PEER), "-B", str(folder), "-G", "Ninja"],
         ["cmake", "--build", str(folder)],
     ):
         done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)

@@ -21,8 +21,8 @@ import pytest
 import yaml
 
 from epg.cli.main import main
+from tests.doubles.ros2_peer.definitions import type_hash
 from tests.ros2.build import Build
-from tests.ros2.definitions import type_hash
 from tests.ros2.network import Network, running
 
 if shutil.which("ros2") is None:

@@ -17,10 +17,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import Missing
+from tests.doubles.toolchain import Missing
+from tests.doubles.xrce_agent.real_agent import CYCLONE, RealAgent, program
 from tests.ros2.build import Build
 from tests.ros2.network import running
-from tests.xrce_agent.real_agent import CYCLONE, RealAgent, program
 
 if shutil.which("ros2") is None:
     pytest.skip("ROS 2 is not sourced: install ROS 2 Jazzy and '. /opt/ros/jazzy/setup.bash'", allow_module_level=True)

@@ -14,13 +14,13 @@ from pathlib import Path
 
 import pytest
 
+from tests.doubles.xrce_agent.real_agent import RealAgent, free_domain
 from tests.platforms.pico.images import skip_unless_emulated
 from tests.platforms.pico.xrce.agent import BoardAgent
 from tests.platforms.pico.xrce.board import Jiwy
 from tests.platforms.pico.xrce.checks import assert_undisturbed
 from tests.platforms.pico.xrce.line import Line
 from tests.ros2.test_ros2_agent import GRAPH_AGENT, environment, graph_agent, node_script
-from tests.xrce_agent.real_agent import RealAgent, free_domain
 
 LONGEST = 60_000.0  # ms of the emulated chip
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("tests.ros2.packages", exc_type=ImportError)
+pytest.importorskip("tests.doubles.ros2_peer.packages", exc_type=ImportError)
 
 from epg.runs.scenario import Profile, ProfilePart
 from tests.ros2.build import Build

@@ -15,6 +15,8 @@ ROOT = Path(__file__).resolve().parents[2]
 RUNTIME = ROOT / "targets" / "runtime"
 COMPONENTS = ROOT / "targets" / "components"
 SOURCES = Path(__file__).resolve().parent / "c"
+PORT = ROOT / "tests" / "doubles" / "port"
+FAKES = [PORT / "fake_port.c", PORT / "fake_application.c"]
 
 WARNINGS = ["-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Wshadow", "-pedantic", "-Werror"]
 ADDRESS_SANITIZER = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-omit-frame-pointer"]
@@ -61,7 +63,7 @@ def compile_objects(
 def _compiler(options: Sequence[str], defines: Sequence[str], includes: Sequence[Path]) -> list[str]:
     compiler = shutil.which("gcc") or shutil.which("cc")
     assert compiler is not None, "a C compiler is needed"
-    folders = [RUNTIME / "include", SOURCES, *sorted(p for p in COMPONENTS.iterdir() if p.is_dir()), *includes]
+    folders = [RUNTIME / "include", SOURCES, PORT, *sorted(p for p in COMPONENTS.iterdir() if p.is_dir()), *includes]
     command = [compiler, "-std=c11", "-g", "-ffp-contract=off", *WARNINGS, *options]
     return command + [f"-I{folder}" for folder in folders] + [f"-D{define}" for define in defines]
 

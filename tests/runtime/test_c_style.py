@@ -14,13 +14,23 @@ import pytest
 
 from tests.checkout import listed
 
-from .program import COMPONENTS, ROOT, RUNTIME, SOURCES, WARNINGS, compile_program, component_sources, runtime_sources
+from .program import (
+    COMPONENTS,
+    FAKES,
+    ROOT,
+    RUNTIME,
+    SOURCES,
+    WARNINGS,
+    compile_program,
+    component_sources,
+    runtime_sources,
+)
 
 CONSOLE = ROOT / "targets" / "middlewares" / "console"
 DRIVERS = sorted(COMPONENTS.glob("*/*.[ch]"))
 HEADERS = sorted((RUNTIME / "include").rglob("*.h"))
 FORMATTED = re.compile(
-    r"(targets|examples/pico_quadrature)/.*\.[ch]$|tests/.*/(c|programs?|rom|mps2)/[^/]*\.(c|h|cpp)$"
+    r"(targets|examples/pico_quadrature)/.*\.[ch]$|tests/(.*/(c|programs?|rom|mps2)|doubles/.*)/[^/]*\.(c|h|cpp)$"
 )
 
 
@@ -96,7 +106,7 @@ def test_drivers_work_with_fast_math(tmp_path: Path) -> None:
         tmp_path / "fast",
         [
             SOURCES / "driver_tests.c",
-            SOURCES / "fake_port.c",
+            FAKES[0],
             *(RUNTIME / "src" / "control" / name for name in ("bridge.c", "outputs.c")),
             *component_sources(),
         ],

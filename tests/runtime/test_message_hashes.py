@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from tests.ros2.definitions import ros_type, type_hash
+from tests.doubles.ros2_peer.definitions import ros_type, type_hash
 
 from .program import RUNTIME
 

@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 
 from .program import (
+    FAKES,
+    PORT,
     SOURCES,
     compile_objects,
     compile_program,
@@ -18,7 +20,7 @@ from .program import (
     runtime_sources,
 )
 
-HELPERS = [SOURCES / "fake_port.c", SOURCES / "fake_application.c", SOURCES / "motor.c"]
+HELPERS = [*FAKES, PORT / "motor.c"]
 PROGRAMS = sorted(SOURCES.glob("*_tests.c"))
 
 

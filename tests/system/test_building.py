@@ -7,7 +7,7 @@ import shutil
 from pathlib import Path
 
 from tests.cmake.project import ROOT, Project, compiled
-from tests.emulator.toolchain import skip_if_missing, tool
+from tests.doubles.toolchain import skip_if_missing, tool
 
 SYSTEM = """version: 1
 system: two_jiwys

@@ -14,7 +14,7 @@ import pytest
 
 from epg.cli.main import main
 from tests.cmake.project import ROOT, Project
-from tests.emulator.toolchain import arm_gcc, pico_sdk, skip_if_missing, tool
+from tests.doubles.toolchain import arm_gcc, pico_sdk, skip_if_missing, tool
 from tests.zephyr.workspace import c_library, run, workspace
 
 SYSTEM = """version: 1

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from tests.models.exports import STATES, Export
-from tests.twenty_sim.expander import Target, read_targets, read_tokens
+from tests.doubles.twenty_sim.expander import Target, read_targets, read_tokens
+from tests.doubles.twenty_sim.exports import STATES, Export
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "integration/20-sim/EPG"

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.connect.started import started
-from tests.models.exports import Export
+from tests.doubles.twenty_sim.exports import Export
 from tests.twenty_sim.generate import FOLDER, PERSONAL, ROOT, generate, tokens_of
 
 EPG = [sys.executable, str(ROOT / "epg")]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.twenty_sim.expander import expand, read_targets
+from tests.doubles.twenty_sim.expander import expand, read_targets
 
 TOKENS = {
     "NUMBER_STATES": "2",

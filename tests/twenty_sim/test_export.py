@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from epg.cli.main import main
+from tests.doubles.twenty_sim.exports import Export
 from tests.models.direct import run_c_vectors, run_cpp_class
-from tests.models.exports import Export
 from tests.models.harness import HAVE_COMPILER, build, load, loaded, run_wrapper, values
 from tests.twenty_sim.direct import close, compile_export, difference, run_export, run_program
 from tests.twenty_sim.generate import FOLDER, PERSONAL, ROOT, generate, generate_from, targets, tokens_of

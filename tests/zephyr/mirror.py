@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from epg.generator.bootstrap import cache_folder
-from tests.emulator.toolchain import ROOT, locked
+from tests.doubles.toolchain import ROOT, locked
 
 from .workspace import Workspace
 

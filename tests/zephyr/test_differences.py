@@ -8,7 +8,7 @@ from functools import partial
 
 import pytest
 
-from tests.emulator.toolchain import arm_gcc, skip_if_missing
+from tests.doubles.toolchain import arm_gcc, skip_if_missing
 
 from .workspace import BuildError, build, workspace
 

@@ -7,7 +7,7 @@ import subprocess
 from pathlib import Path
 
 from epg.simulate import simulate
-from tests.emulator.toolchain import arm_gcc, skip_if_missing
+from tests.doubles.toolchain import arm_gcc, skip_if_missing
 from tests.simulate.test_emergency_stop import CART, EXPECTED, enabled
 from tests.simulate.test_emergency_stop import build as build_host
 

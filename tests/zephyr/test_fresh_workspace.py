@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import ROOT, arm_gcc, skip_if_missing
+from tests.doubles.toolchain import ROOT, arm_gcc, skip_if_missing
 
 from .west_workspace import BOARDS, fresh_workspace, west
 from .workspace import c_library, workspace

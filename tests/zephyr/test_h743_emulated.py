@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import arm_gcc, skip_if_missing, unicorn
+from tests.doubles.stm32.stm32h743 import Stm32h743
+from tests.doubles.toolchain import arm_gcc, skip_if_missing, unicorn
 
 from .firmware_requests import EHOSTDOWN, FETCH, PRESET, READ, RESUME, SKIPPED, SUSPEND, WATCH
-from .stm32h743 import Stm32h743
 from .workspace import build, workspace
 
 # In the order of `firmware`: timer, pins and their alternate function (data sheet DS12110, table 9), sign.

@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 
 from epg.generator.bootstrap import LOCKS
-from tests.emulator.toolchain import ROOT, arm_gcc, skip_if_missing
+from tests.doubles.toolchain import ROOT, arm_gcc, skip_if_missing
 
 from .workspace import build, workspace
 

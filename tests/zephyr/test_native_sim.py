@@ -17,12 +17,12 @@ from typing import Any
 import pytest
 
 from epg.simulate import simulate
-from tests.emulator.toolchain import ROOT, Missing, arm_gcc, skip_if_missing
+from tests.doubles.toolchain import ROOT, Missing, arm_gcc, skip_if_missing
+from tests.doubles.xrce_agent import Agent, PtyLink, UdpLink, float64
+from tests.doubles.xrce_agent.bare import libraries
 from tests.middlewares.client import Host, Lines, values
+from tests.middlewares.xrce.follow import follow
 from tests.waiting import until
-from tests.xrce_agent import Agent, PtyLink, UdpLink, float64
-from tests.xrce_agent.bare import libraries
-from tests.xrce_agent.jiwy import follow
 
 from .workspace import NATIVE, build, workspace
 from .workspace import run as run_tool

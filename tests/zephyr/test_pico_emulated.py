@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.emulator import Emulator
-from tests.emulator.toolchain import arm_gcc, node, rp2040js, skip_if_missing
+from tests.doubles.rp2040.emulator import Emulator
+from tests.doubles.toolchain import arm_gcc, node, rp2040js, skip_if_missing
 
 from .firmware_requests import EHOSTDOWN, EIO, FETCH, POKE, PRESET, READ, RESUME, SKIPPED, SUSPEND, WATCH
 from .workspace import build, workspace

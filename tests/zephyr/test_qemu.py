@@ -9,7 +9,7 @@ import subprocess
 import threading
 from pathlib import Path
 
-from tests.emulator.toolchain import ROOT, Missing, arm_gcc, skip_if_missing
+from tests.doubles.toolchain import ROOT, Missing, arm_gcc, skip_if_missing
 
 from .workspace import build, c_library, workspace
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from tests.emulator.toolchain import arm_gcc, skip_if_missing
+from tests.doubles.toolchain import arm_gcc, skip_if_missing
 
 from .workspace import build, workspace
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tests.emulator.toolchain import arm_gcc, skip_if_missing
+from tests.doubles.toolchain import arm_gcc, skip_if_missing
 
 from .twister import statuses_of
 from .workspace import NATIVE, c_library, need_twister, workspace

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import ROOT, Missing, skip_if_missing, tool
+from tests.doubles.toolchain import ROOT, Missing, skip_if_missing, tool
 
 PATCH = ROOT / "zephyr_module" / "upstream" / "st-stm32-qdec.patch"
 MADE_FOR = "VERSION_MAJOR = 4\nVERSION_MINOR = 1\nPATCHLEVEL = 99\n"

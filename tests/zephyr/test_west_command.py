@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from tests.connect.page import Page
-from tests.emulator.toolchain import ROOT, skip_if_missing
+from tests.doubles.toolchain import ROOT, skip_if_missing
 from tests.waiting import until
 
 from .workspace import workspace

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import ROOT, Missing, skip_if_missing, tool
+from tests.doubles.toolchain import ROOT, Missing, skip_if_missing, tool
 
 FOLDERS = ("zephyr_module", "tests/zephyr")
 KINDS = (".c", ".h", ".overlay", ".yaml", ".conf")

@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from tests.emulator.toolchain import ROOT
+from tests.doubles.toolchain import ROOT
 
 from .workspace import c_library, run, workspace
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import subprocess
 from pathlib import Path
 
-from tests.emulator.toolchain import ROOT
+from tests.doubles.toolchain import ROOT
 
 from .mirror import mirror
 from .workspace import HALS, BuildError, workspace

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from epg.generator.bootstrap import cache_folder
-from tests.emulator.toolchain import ROOT, Missing, arm_gcc, locked, tool
+from tests.doubles.toolchain import ROOT, Missing, arm_gcc, locked, tool
 
 NATIVE = "native_sim/native/64"
 """native_sim with 64 bits, which does not need 32-bit libraries on the host."""

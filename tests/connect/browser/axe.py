@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from tests.emulator.toolchain import npm_package
+from tests.doubles.toolchain import npm_package
 
 HERE = Path(__file__).resolve().parent
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from tests.emulator.toolchain import Missing
+from tests.doubles.toolchain import Missing
 from tests.live.witness import build_robot
 from tests.waiting import PATIENCE
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from tests.emulator.toolchain import Missing, node, npm_package
+from tests.doubles.toolchain import Missing, node, npm_package
 from tests.waiting import PATIENCE, until
 
 from .axe import HERE

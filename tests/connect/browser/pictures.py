@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from epg.generator.bootstrap import ensure
-from tests.emulator.toolchain import arm_gcc, pico_sdk
+from tests.doubles.toolchain import arm_gcc, pico_sdk
 
 from .acts import until
 from .conftest import FLAGS, NAMES, copy_jiwy

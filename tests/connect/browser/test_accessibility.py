@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tests.emulator.toolchain import skip_if_missing
+from tests.doubles.toolchain import skip_if_missing
 
 from .acts import field, handle
 from .axe import axe_core, violations

@@ -11,7 +11,7 @@ import pytest
 
 from epg.cli.main import main
 from tests.connect.robots import axes_project, with_second_target
-from tests.emulator.toolchain import skip_if_missing
+from tests.doubles.toolchain import skip_if_missing
 
 from .acts import tab_to, until
 from .axe import axe_core, violations

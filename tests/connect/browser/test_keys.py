@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from tests.connect.test_overview import write_pair
-from tests.emulator.toolchain import skip_if_missing
+from tests.doubles.toolchain import skip_if_missing
 from tests.live.target import Target
 
 from .axe import axe_core, violations_by

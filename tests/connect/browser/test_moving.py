@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from tests.connect.test_moving import write_axis
-from tests.emulator.toolchain import Missing
+from tests.doubles.toolchain import Missing
 
 from .acts import until
 from .axe import violations

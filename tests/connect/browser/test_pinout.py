@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from tests.emulator.toolchain import skip_if_missing
+from tests.doubles.toolchain import skip_if_missing
 
 from .acts import drag, until
 from .axe import axe_core, violations

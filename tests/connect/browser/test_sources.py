@@ -17,7 +17,7 @@ from epg.connect.session import Session
 from tests.connect.conftest import ROOT, one_axis_project
 from tests.connect.page import session_of
 from tests.connect.test_overview import write_pair
-from tests.emulator.toolchain import npm_package, skip_if_missing
+from tests.doubles.toolchain import npm_package, skip_if_missing
 from tests.waiting import until
 
 from .axe import HERE

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from tests.connect.test_overview import edit, write_pair
-from tests.emulator.toolchain import Missing
+from tests.doubles.toolchain import Missing
 
 from .acts import port, until
 from .axe import violations

@@ -16,7 +16,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from tests.live import bridge
+from tests.doubles.network import bridge
 from tests.live.witness import PROJECT, Robot
 from tests.waiting import PATIENCE, until
 

@@ -42,7 +42,7 @@ using Bytes = std::vector<unsigned char>;
 /** Messages of any type: the bytes after the encapsulation header. */
 class BytesType : public TopicDataType
 {
-public:
+  public:
     explicit BytesType(const char *name)
     {
         setName(name);
@@ -91,7 +91,7 @@ public:
 
 class Discovery : public DomainParticipantListener
 {
-public:
+  public:
     std::mutex mutex;
     std::set<std::string> lines;
 
@@ -105,7 +105,7 @@ public:
         add("reader", info.info.topicName().to_string(), info.info.typeName().to_string(), info.info.m_qos.m_userData);
     }
 
-private:
+  private:
     void add(const char *kind, const std::string &topic, const std::string &type, const UserDataQosPolicy &data)
     {
         const std::lock_guard<std::mutex> guard(mutex);

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
 
-from tests.emulator.toolchain import Missing
+from tests.doubles.toolchain import Missing
 
 PATIENCE = 60.0
 """Seconds to wait for a byte, on a machine that also runs other programs."""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A bad network: a program that passes datagrams on between clients and a target, and harms them in both directions.
 
-    python -m tests.live.relay TARGET_PORT LOSS COPIES
+    python -m tests.doubles.network.relay TARGET_PORT LOSS COPIES
 
 It prints the port that it listens on.  It loses LOSS of the datagrams, and sends COPIES of them a second time, half of
 these as late as 0.6 s later.  Each datagram is delayed by up to 10 ms, so that they overtake each other.

@@ -11,7 +11,7 @@ import cyclonedds.idl.annotations as annotate
 from cyclonedds.idl import make_idl_struct
 from cyclonedds.idl.types import array, float32, float64, int16, int32, int64, sequence, uint8, uint32, uint64
 
-from tests.ros2.definitions import fields_of
+from tests.doubles.ros2_peer.definitions import fields_of
 
 _IDL = {
     "int16": int16,

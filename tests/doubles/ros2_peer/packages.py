@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes CycloneDDS for Python importable: EPG installs it into its cache, as for ``epg record``.
 
-A test module asks for it by ``pytest.importorskip("tests.ros2.packages", exc_type=ImportError)`` before its imports.
+A test module asks for it before its imports:
+``pytest.importorskip("tests.doubles.ros2_peer.packages", exc_type=ImportError)``.
 """
 
 from epg.generator import bootstrap

@@ -41,8 +41,8 @@ from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
-from tests.ros2.definitions import ros_type, type_hash
-from tests.ros2.messages import Gid_, NodeEntitiesInfo_, ParticipantEntitiesInfo_, service_struct
+from tests.doubles.ros2_peer.definitions import ros_type, type_hash
+from tests.doubles.ros2_peer.messages import Gid_, NodeEntitiesInfo_, ParticipantEntitiesInfo_, service_struct
 
 FOREVER = duration(infinite=True)
 ANYTHING = SampleState.Any | ViewState.Any | InstanceState.Any

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Builds Pico SDK projects for tests, in folders of EPG's cache that are kept: a second build takes half a second.
 
->>> # build("tests/emulator/programs", board="pico", targets=["serial"]) / "serial.elf"
+>>> # build("tests/doubles/rp2040/programs", board="pico", targets=["serial"]) / "serial.elf"
 """
 
 from __future__ import annotations
@@ -13,8 +13,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from epg.generator.bootstrap import cache_folder
+from tests.doubles.toolchain import ROOT, Missing, arm_gcc, locked, pico_sdk, tool
 
-from .toolchain import HERE, ROOT, Missing, arm_gcc, locked, pico_sdk, tool
+HERE = Path(__file__).resolve().parent
 
 
 class BuildError(Exception):

@@ -9,16 +9,17 @@ from typing import Any
 
 import pytest
 
+from tests.doubles.toolchain import arm_gcc, node, pico_sdk, rp2040js, skip_if_missing
+
 from .build import build
 from .emulator import Emulator
-from .toolchain import arm_gcc, node, pico_sdk, rp2040js, skip_if_missing
 
 
 @pytest.fixture(scope="session")
 def programs() -> Path:
     """The folder with serial.elf and cases.elf."""
     skip_if_missing(pico_sdk, arm_gcc, node, rp2040js)
-    return build("tests/emulator/programs")
+    return build("tests/doubles/rp2040/programs")
 
 
 class Board:

@@ -17,7 +17,9 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from .toolchain import HERE, Missing, node, rp2040js, stand_in_rom, stock_rom
+from tests.doubles.toolchain import Missing, node, rp2040js, stand_in_rom, stock_rom
+
+HERE = Path(__file__).resolve().parent
 
 __all__ = ["CYCLES_PER_MILLISECOND", "Emulator", "EmulatorError", "Missing"]
 

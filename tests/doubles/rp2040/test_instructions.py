@@ -6,8 +6,9 @@ from __future__ import annotations
 import random
 from typing import Any
 
+from tests.doubles.toolchain import unicorn
+
 from .conftest import Board
-from .toolchain import unicorn
 
 CODE = 0x20020000
 DATA = 0x20030000

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from tests.doubles.toolchain import arm_gcc, node, pico_sdk, rp2040js, skip_if_missing
+
 from .build import build
 from .emulator import Emulator
-from .toolchain import arm_gcc, node, pico_sdk, rp2040js, skip_if_missing
 
 
 @pytest.fixture(scope="session")

@@ -18,10 +18,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from tests.emulator.toolchain import ROOT, unicorn
-from tests.platforms.pico.images import binutils
+from tests.doubles.toolchain import RP2040, binutils, unicorn
 
-COMPILER_ARITHMETIC = {"CMAKE_PROJECT_INCLUDE": str(ROOT / "tests" / "emulator" / "compiler_arithmetic.cmake")}
+COMPILER_ARITHMETIC = {"CMAKE_PROJECT_INCLUDE": str(RP2040 / "compiler_arithmetic.cmake")}
 
 FLASH, FLASH_SIZE = 0x10000000, 0x400000
 RAM, RAM_SIZE = 0x20000000, 0x82000

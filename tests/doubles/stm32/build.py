@@ -12,22 +12,21 @@ from functools import lru_cache
 from pathlib import Path
 
 from epg.generator.bootstrap import cache_folder
-from tests.emulator.toolchain import arm_gcc, locked, skip_if_missing, tool, unicorn
+from tests.doubles.toolchain import arm_gcc, locked, skip_if_missing, tool, unicorn
 
 PROGRAMS = Path(__file__).resolve().parent / "programs"
-MPS2 = PROGRAMS.parents[2] / "firmware" / "mps2" / "mps2.ld"
 OPTIONS = ("-mcpu=cortex-m7", "-mthumb", "-mfpu=fpv5-d16", "-mfloat-abi=hard", "-std=gnu11", "-O2", "-g")
 WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Werror")
 
 
 @lru_cache
-def small(name: str, *, mps2: bool = False) -> Path:
+def small(name: str, *, mps2: Path | None = None) -> Path:
     """The program ``name``.c with its start, built once per version of its sources; skips without the tools.
 
-    With ``mps2`` it is for Arm's MPS2 board in QEMU, where it has the core's registers only.
+    With ``mps2``, a linker script, it is for Arm's MPS2 board in QEMU, where it has the core's registers only.
     """
     skip_if_missing(arm_gcc, unicorn, lambda: tool("cmsis_core"), lambda: tool("cmsis_device_h7"))
-    script = MPS2 if mps2 else PROGRAMS / "small.ld"
+    script = mps2 or PROGRAMS / "small.ld"
     sources = [PROGRAMS / "start.c", PROGRAMS / f"{name}.c"]
     files = [*sources, PROGRAMS / "small.h", script]
     digest = hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()[:16]

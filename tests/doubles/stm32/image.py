@@ -8,7 +8,7 @@ import struct
 from functools import cached_property
 from pathlib import Path
 
-from tests.platforms.pico.images import binutils
+from tests.doubles.toolchain import binutils
 
 _UNMASKS = re.compile(
     r"\s*([0-9a-f]+):\t.*\t(?:cpsie\t|msr\t(?:PRIMASK|BASEPRI|BASEPRI_MAX|FAULTMASK),)", re.IGNORECASE

@@ -14,7 +14,7 @@ from __future__ import annotations
 import struct
 from typing import Any
 
-from tests.emulator.toolchain import unicorn
+from tests.doubles.toolchain import unicorn
 
 from .agenda import UNITS, Agenda
 from .counters import Counters

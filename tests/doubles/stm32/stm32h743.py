@@ -17,10 +17,10 @@ import struct
 from pathlib import Path
 from typing import Any
 
-from tests.emulator.toolchain import unicorn
-from tests.platforms.stm32.machine.agenda import Agenda
-from tests.platforms.stm32.machine.image import Image
-from tests.platforms.stm32.machine.timers import Level, Timer
+from tests.doubles.stm32.agenda import Agenda
+from tests.doubles.stm32.image import Image
+from tests.doubles.stm32.timers import Level, Timer
+from tests.doubles.toolchain import unicorn
 
 FLASH, FLASH_SIZE = 0x08000000, 0x200000
 MEMORIES = (

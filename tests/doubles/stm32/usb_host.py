@@ -18,7 +18,7 @@ from collections import deque
 from collections.abc import Generator
 from typing import Protocol
 
-from tests.platforms.pico.usb.descriptors import SerialPort, serial_ports, text
+from tests.doubles.usb_descriptors import SerialPort, serial_ports, text
 
 from .agenda import UNITS, Agenda
 from .usb import ENUMERATED, STALLED, SUSPEND, Usb

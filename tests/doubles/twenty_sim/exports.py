@@ -11,7 +11,14 @@ import re
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from tests.models.exports_fmu import GUID, as_fmu, fmi2_functions, model_description, with_instance, with_output_time
+from tests.doubles.twenty_sim.exports_fmu import (
+    GUID,
+    as_fmu,
+    fmi2_functions,
+    model_description,
+    with_instance,
+    with_output_time,
+)
 
 STATES = 2
 PARAMETERS = (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The forms of 20-sim's FMUs for :class:`~tests.models.exports.Export`, and FMI 2.0's functions for them.
+"""The forms of 20-sim's FMUs for :class:`~tests.doubles.twenty_sim.exports.Export`, and FMI 2.0's functions for them.
 
 As in ``exports.py``, no text comes from 20-sim's templates: only the interfaces and their promises are 20-sim's.
 """
@@ -10,7 +10,7 @@ import re
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tests.models.exports import Export
+    from tests.doubles.twenty_sim.exports import Export
 
 STATES = 2
 GUID = "{look-alike}"

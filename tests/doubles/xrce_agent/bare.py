@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 import hashlib
+import subprocess
 from pathlib import Path
 
 from epg.generator.bootstrap import cache_folder
-from tests.cmake.built import built, cmake_and_ninja
-from tests.emulator.toolchain import locked, tool
+from tests.doubles.toolchain import cmake_and_ninja, locked, tool
 
 PROGRAMS = Path(__file__).resolve().parent / "programs"
 
@@ -28,5 +28,7 @@ def bare_client() -> Path:
     folder = cache_folder() / "test-build" / f"bare-client-{digest.hexdigest()[:16]}"
     with locked(folder):
         if not (folder / "bare_client").is_file():
-            built(PROGRAMS, folder, f"-DCLIENT={client}", f"-DCDR={cdr}")
+            options = ("-G", "Ninja", f"-DCLIENT={client}", f"-DCDR={cdr}")
+            for command in (["-S", PROGRAMS, "-B", folder, *options], ["--build", folder]):
+                subprocess.run(["cmake", *command], check=True, stdout=subprocess.DEVNULL)
     return folder / "bare_client"

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import Missing
-from tests.xrce_agent.bare import bare_client
+from tests.doubles.toolchain import Missing
+from tests.doubles.xrce_agent.bare import bare_client
 
 
 @pytest.fixture(scope="session")

@@ -2,7 +2,8 @@
 """The topics of boards on a DDS network: eProsima's agent uses Fast DDS for this, this bridge CycloneDDS for Python.
 
 Every writer and reader of a board gets a counterpart on DDS with the same topic, type and QoS, in a participant with
-the name of its node.  The types are those of tests.ros2.messages; a topic of another type stays between boards.
+the name of its node.  The types are those of ``tests.doubles.ros2_peer.messages``; a topic of another type stays
+between boards.
 
 >>> with Agent(UdpLink()) as agent, DdsBridge(agent.topics, domain=7):      # doctest: +SKIP
 ...     ...
@@ -21,7 +22,7 @@ from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
-from tests.ros2 import messages
+from tests.doubles.ros2_peer import messages
 
 from .topics import Endpoint, ReaderEnd, Topics
 

@@ -1,6 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """eProsima's agent, if it is installed: ``EPG_XRCE_AGENT`` names the program, or ``MicroXRCEAgent`` is on ``PATH``.
 
+Version 2.4.2 builds with Debian 12's Fast DDS.  It needs the packages ``libfastrtps-dev``, ``libfastcdr-dev``,
+``libasio-dev``, ``libtinyxml2-dev`` and ``libssl-dev``, and the CMake options ``UAGENT_SUPERBUILD=OFF``,
+``UAGENT_USE_SYSTEM_FASTDDS=ON``, ``UAGENT_USE_SYSTEM_FASTCDR=ON``, ``UAGENT_CED_PROFILE=OFF``,
+``UAGENT_P2P_PROFILE=OFF``, ``UAGENT_DISCOVERY_PROFILE=OFF`` and ``UAGENT_LOGGER_PROFILE=OFF``.
+
 It is limited to the loopback interface and to one DDS domain, so that tests do not disturb each other.
 """
 
@@ -16,7 +21,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from tests.emulator.toolchain import Missing
+from tests.doubles.toolchain import Missing
 
 from .links import UdpLink
 
@@ -43,7 +48,9 @@ def program() -> Path:
     """The agent; raises :class:`Missing`."""
     named = os.environ.get("EPG_XRCE_AGENT") or shutil.which("MicroXRCEAgent")
     if not named or not Path(named).is_file():
-        raise Missing("EPG_XRCE_AGENT does not name eProsima's agent: tests/xrce_agent/README.md says how to get one")
+        raise Missing(
+            "EPG_XRCE_AGENT does not name eProsima's agent: tests/doubles/xrce_agent/real_agent.py says how to get one"
+        )
     return Path(named)
 
 

@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.xrce_agent import Agent, DeviceLink, Kind, PtyLink, Status, UdpLink, float64, read_float64
-from tests.xrce_agent.topics import Subscription
-from tests.xrce_agent.wire import Id
+from tests.doubles.xrce_agent import Agent, DeviceLink, Kind, PtyLink, Status, UdpLink, float64, read_float64
+from tests.doubles.xrce_agent.topics import Subscription
+from tests.doubles.xrce_agent.wire import Id
 
 
 @contextmanager

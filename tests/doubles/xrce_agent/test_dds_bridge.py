@@ -8,14 +8,14 @@ from pathlib import Path
 
 import pytest
 
-from tests.xrce_agent import Agent, UdpLink
+from tests.doubles.xrce_agent import Agent, UdpLink
 
-pytest.importorskip("tests.ros2.packages", exc_type=ImportError)
+pytest.importorskip("tests.doubles.ros2_peer.packages", exc_type=ImportError)
 
-from tests.ros2.messages import Float64_, numbers
+from tests.doubles.ros2_peer.messages import Float64_, numbers
+from tests.doubles.ros2_peer.peer import Peer
+from tests.doubles.xrce_agent.dds_bridge import DdsBridge
 from tests.ros2.network import network
-from tests.ros2.peer import Peer
-from tests.xrce_agent.dds_bridge import DdsBridge
 
 
 def test_a_client_and_a_peer_talk(client_program: Path) -> None:

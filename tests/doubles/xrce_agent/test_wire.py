@@ -10,12 +10,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.xrce_agent.faults import Faults
-from tests.xrce_agent.framing import Deframer, crc16, frame
-from tests.xrce_agent.representations import Description, Qos, read_description
-from tests.xrce_agent.streams import BestEffortInput, Fragments, ReliableInput, ReliableOutput
-from tests.xrce_agent.topics import Endpoint, Topics
-from tests.xrce_agent.wire import CdrReader, Header, Id, Kind, WireError, later, split, submessage, submessages
+from tests.doubles.xrce_agent.faults import Faults
+from tests.doubles.xrce_agent.framing import Deframer, crc16, frame
+from tests.doubles.xrce_agent.representations import Description, Qos, read_description
+from tests.doubles.xrce_agent.streams import BestEffortInput, Fragments, ReliableInput, ReliableOutput
+from tests.doubles.xrce_agent.topics import Endpoint, Topics
+from tests.doubles.xrce_agent.wire import CdrReader, Header, Id, Kind, WireError, later, split, submessage, submessages
 
 QUICK = settings(max_examples=100, deadline=None, derandomize=True, database=None)
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.doubles.twenty_sim.exports import Export
 from tests.models.direct import run_c_vectors, run_fmu
-from tests.models.exports import Export
 from tests.models.harness import build, load, loaded, run_program, run_wrapper, values
 
 STEPS = 1500

@@ -21,7 +21,7 @@ import pytest
 from epg.generator.importers.fmu.fmi_headers import fmi_functions, fmi_headers
 from epg.generator.importers.fmu.fmu_export import FmuExport
 from epg.generator.importers.fmu.fmu_files import is_fmu_folder
-from tests.models.exports import Export
+from tests.doubles.twenty_sim.exports import Export
 from tests.models.fmus import FMU2, FMU3, listed_sources
 from tests.models.harness import COMMON, build, load, run, run_program
 

@@ -14,8 +14,8 @@ from pathlib import Path
 import pytest
 
 from epg.generator.emit.model import emit_model, model_build
+from tests.doubles.twenty_sim.exports import Export
 from tests.models.direct import run_c_vectors, run_cpp_class
-from tests.models.exports import Export
 from tests.models.harness import (
     MODELS,
     Library,

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.cmake.project import ROOT
-from tests.models.exports import Export
+from tests.doubles.twenty_sim.exports import Export
 from tests.models.harness import build, loaded, run_wrapper
 
 STEPS = 500

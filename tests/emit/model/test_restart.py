@@ -16,7 +16,7 @@ import pytest
 from epg.generator.diagnostics import Diagnostics, UserError
 from epg.generator.documents.object_file import ObjectFile
 from epg.generator.emit.model.variables import model_variables
-from tests.models.exports import Export
+from tests.doubles.twenty_sim.exports import Export
 from tests.models.fmus import FMU2, FMU3, changed, pack
 from tests.models.harness import MODELS, SIGNAL, Library, build, compile_file, loaded, run, run_program
 from tests.twenty_sim.generate import write_by_template

@@ -9,7 +9,7 @@ import subprocess
 
 import pytest
 
-from tests.emulator.toolchain import ROOT
+from tests.doubles.toolchain import ROOT
 
 LIBRARY = ROOT / "targets" / "libraries" / "pico_quadrature"
 SOURCES = sorted(LIBRARY.rglob("*.c"))

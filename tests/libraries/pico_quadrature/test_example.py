@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import pytest
 
-from tests.emulator.build import build
-from tests.emulator.emulator import Emulator
-from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js, skip_if_missing
+from tests.doubles.rp2040.build import build
+from tests.doubles.rp2040.emulator import Emulator
+from tests.doubles.toolchain import arm_gcc, node, pico_sdk, rp2040js, skip_if_missing
 
 EXAMPLE = "examples/pico_quadrature"
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import ROOT, arm_gcc, pico_sdk, pioasm, skip_if_missing
+from tests.doubles.toolchain import ROOT, arm_gcc, pico_sdk, pioasm, skip_if_missing
 
 LIBRARY = ROOT / "targets" / "libraries" / "pico_quadrature"
 HEADER = LIBRARY / "include" / "epg" / "pico_quadrature_program.h"

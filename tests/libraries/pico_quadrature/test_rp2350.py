@@ -12,8 +12,8 @@ from typing import Any
 
 import pytest
 
-from tests.emulator.build import build
-from tests.emulator.toolchain import arm_gcc, pico_sdk, skip_if_missing, unicorn
+from tests.doubles.rp2040.build import build
+from tests.doubles.toolchain import arm_gcc, pico_sdk, skip_if_missing, unicorn
 
 from .conftest import BLOCK, OK, PINS, PROJECT, PULL, STATE_MACHINE
 

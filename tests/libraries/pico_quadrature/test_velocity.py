@@ -8,7 +8,7 @@ import struct
 
 import pytest
 
-from tests.emulator.emulator import CLOCK
+from tests.doubles.rp2040.emulator import CLOCK
 
 from .conftest import VELOCITY, Board, Config
 

@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.cmake.built import SANITIZERS, cmake_and_ninja
-from tests.emulator.toolchain import skip_if_missing
-from tests.xrce_agent import Agent, UdpLink
+from tests.cmake.built import SANITIZERS
+from tests.doubles.toolchain import cmake_and_ninja, skip_if_missing
+from tests.doubles.xrce_agent import Agent, UdpLink
 
 HERE = Path(__file__).resolve().parent
 WARNINGS = "-Wall -Wextra -Wconversion -Wdouble-promotion -Werror"

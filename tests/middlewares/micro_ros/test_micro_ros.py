@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.doubles.xrce_agent import Agent, PtyLink
 from tests.middlewares.xrce.board import Board
 from tests.middlewares.xrce.checks import (
     check_alive,
@@ -19,7 +20,6 @@ from tests.middlewares.xrce.checks import (
     check_topics,
     check_wrong_setpoints,
 )
-from tests.xrce_agent import Agent, PtyLink
 
 
 def test_node_and_topics_are_those_of_xrce(robot: Path, agent: Agent) -> None:

@@ -15,10 +15,9 @@ HERE = Path(__file__).resolve().parent / "c"
 
 @pytest.fixture(scope="session")
 def clock_tests(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    fakes = [program.SOURCES / "fake_port.c", program.SOURCES / "fake_application.c"]
     output: Path = program.compile_program(
         tmp_path_factory.mktemp("micro_ros_clock") / "clock_tests",
-        [HERE / "clock_tests.c", MICRO_ROS / "micro_ros_clock.c", *fakes, *program.runtime_sources()],
+        [HERE / "clock_tests.c", MICRO_ROS / "micro_ros_clock.c", *program.FAKES, *program.runtime_sources()],
         includes=[MICRO_ROS, HERE],
     )
     return output

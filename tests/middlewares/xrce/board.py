@@ -9,7 +9,7 @@ import subprocess
 import time
 from pathlib import Path
 
-from tests.xrce_agent import Agent, Diagnostics, UdpLink, float64, read_diagnostics, read_float64
+from tests.doubles.xrce_agent import Agent, Diagnostics, UdpLink, float64, read_diagnostics, read_float64
 
 PATIENCE = 20.0
 """Longest time to wait, in seconds, on a machine that also runs other programs."""

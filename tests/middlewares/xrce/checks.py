@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import pytest
 
-from tests.xrce_agent import Agent
+from tests.doubles.xrce_agent import Agent
 
 from .board import Board
 

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from tests.cmake.built import SANITIZERS, built
-from tests.emulator.toolchain import skip_if_missing
-from tests.xrce_agent import Agent, UdpLink
-from tests.xrce_agent.bare import libraries
+from tests.doubles.toolchain import skip_if_missing
+from tests.doubles.xrce_agent import Agent, UdpLink
+from tests.doubles.xrce_agent.bare import libraries
 
 HERE = Path(__file__).resolve().parent
 

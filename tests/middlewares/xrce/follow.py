@@ -6,8 +6,7 @@ from __future__ import annotations
 import math
 import time
 
-from .agent import Agent
-from .messages import float64, read_float64
+from tests.doubles.xrce_agent import Agent, float64, read_float64
 
 
 def follow(agent: Agent, seconds: float) -> float:

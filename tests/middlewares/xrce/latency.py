@@ -9,9 +9,9 @@ import subprocess
 import time
 from pathlib import Path
 
+from tests.doubles.xrce_agent import Agent, UdpLink, float64
 from tests.live.target import read_trace
-from tests.xrce_agent import Agent, UdpLink, float64
-from tests.xrce_agent.latency import TOPIC, Step, duty, parse
+from tests.middlewares.xrce.steps import TOPIC, Step, duty, parse
 
 
 def measure(program: Path, count: int, folder: Path, seed: int = 1) -> list[Step]:

@@ -7,8 +7,8 @@ import statistics
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from tests.doubles.xrce_agent import Agent
 from tests.waiting import until
-from tests.xrce_agent import Agent
 
 from .board import Board
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import subprocess
 from pathlib import Path
 
-from tests.emulator.toolchain import skip_if_missing, tool
+from tests.doubles.toolchain import skip_if_missing, tool
 
 ROOT = Path(__file__).resolve().parents[3]
 PROGRAM = Path(__file__).resolve().parent / "cdr" / "trace.c"

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.xrce_agent import Agent, Kind, Link, PtyLink, Status, UdpLink
-from tests.xrce_agent.wire import Header, Id, Submessage
+from tests.doubles.xrce_agent import Agent, Kind, Link, PtyLink, Status, UdpLink
+from tests.doubles.xrce_agent.wire import Header, Id, Submessage
 
 from .board import Board
 from .checks import check_alive, check_board_before_agent, check_end_of_session, check_topics

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.xrce_agent import Agent
+from tests.doubles.xrce_agent import Agent
 
 from ..client import Host, stat
 

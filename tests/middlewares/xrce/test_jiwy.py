@@ -7,8 +7,8 @@ import subprocess
 import time
 from pathlib import Path
 
-from tests.xrce_agent import Agent, float64
-from tests.xrce_agent.jiwy import follow
+from tests.doubles.xrce_agent import Agent, float64
+from tests.middlewares.xrce.follow import follow
 
 from .board import without_connection
 

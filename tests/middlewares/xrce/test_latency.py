@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import ROOT, skip_if_missing
+from tests.doubles.toolchain import ROOT, skip_if_missing
+from tests.doubles.xrce_agent.bare import libraries
 from tests.examples.pico_project import configure, run
-from tests.xrce_agent.bare import libraries
-from tests.xrce_agent.latency import DELAYS, PERIOD, PROJECT, executable
+from tests.middlewares.xrce.steps import DELAYS, PERIOD, PROJECT, executable
 
 from .latency import measure
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.xrce_agent import Agent
+from tests.doubles.xrce_agent import Agent
 
 from .board import Board
 from .conftest import build

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.xrce_agent import Agent, UdpLink
+from tests.doubles.xrce_agent import Agent, UdpLink
 
 from .conftest import SANITIZERS, build
 

@@ -13,9 +13,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.xrce_agent import Agent
-from tests.xrce_agent.parameters import DOUBLE, Parameters, names
-from tests.xrce_agent.wire import Id
+from tests.doubles.xrce_agent import Agent
+from tests.doubles.xrce_agent.parameters import DOUBLE, Parameters, names
+from tests.doubles.xrce_agent.wire import Id
 
 from .board import without_connection
 

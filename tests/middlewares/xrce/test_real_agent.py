@@ -13,17 +13,17 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import Missing
-from tests.xrce_agent.ptys import Cable
-from tests.xrce_agent.real_agent import RealAgent, free_domain, on_loopback, program
+from tests.doubles.toolchain import Missing
+from tests.doubles.xrce_agent.ptys import Cable
+from tests.doubles.xrce_agent.real_agent import RealAgent, free_domain, on_loopback, program
 
-pytest.importorskip("tests.ros2.packages", exc_type=ImportError)
+pytest.importorskip("tests.doubles.ros2_peer.packages", exc_type=ImportError)
 
 from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsParticipant
 from cyclonedds.core import Policy
 
-from tests.ros2.messages import Bool_, DiagnosticArray_, Float64_, numbers
-from tests.ros2.peer import Peer, Publisher, Subscription
+from tests.doubles.ros2_peer.messages import Bool_, DiagnosticArray_, Float64_, numbers
+from tests.doubles.ros2_peer.peer import Peer, Publisher, Subscription
 
 
 @pytest.fixture(autouse=True)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.xrce_agent import Agent
+from tests.doubles.xrce_agent import Agent
 
 from .reconnecting import check, reconnect
 

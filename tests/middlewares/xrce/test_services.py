@@ -7,8 +7,8 @@ import struct
 import time
 from pathlib import Path
 
-from tests.xrce_agent import Agent, Kind
-from tests.xrce_agent.wire import CdrReader
+from tests.doubles.xrce_agent import Agent, Kind
+from tests.doubles.xrce_agent.wire import CdrReader
 
 from .board import Board
 

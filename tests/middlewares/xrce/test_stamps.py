@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.xrce_agent import Agent, Diagnostics, read_diagnostics
-from tests.xrce_agent.wire import Id
+from tests.doubles.xrce_agent import Agent, Diagnostics, read_diagnostics
+from tests.doubles.xrce_agent.wire import Id
 
 from .board import Board
 from .checks import check_stamps

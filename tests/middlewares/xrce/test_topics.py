@@ -12,7 +12,7 @@ import pytest
 
 from epg.live.client import Client, CommandRefused
 from epg.live.port import SerialPort
-from tests.xrce_agent import Agent
+from tests.doubles.xrce_agent import Agent
 
 from .board import Board
 from .checks import check_newest_setpoints, check_period, check_wrong_setpoints

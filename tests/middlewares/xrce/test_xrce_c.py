@@ -12,13 +12,14 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import Missing
+from tests.doubles.toolchain import Missing
+from tests.doubles.xrce_agent.bare import libraries
 from tests.middlewares.test_console_c import program
-from tests.xrce_agent.bare import libraries
 
 ROOT = Path(__file__).resolve().parents[3]
 XRCE = ROOT / "targets" / "middlewares" / "xrce"
 HERE = Path(__file__).resolve().parent / "c"
+AGENT = ROOT / "tests" / "doubles" / "xrce_agent" / "clocked"
 
 
 @pytest.fixture(scope="session")
@@ -71,11 +72,10 @@ def link_tests(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="session")
 def session_tests(client: tuple[Path, list[str]], tmp_path_factory: pytest.TempPathFactory) -> Path:
     archive, options = client
-    fakes = [program.SOURCES / "fake_port.c", program.SOURCES / "fake_application.c"]
     sources = [
         HERE / "session_tests.c",
-        HERE / "agent.c",
-        *fakes,
+        AGENT / "agent.c",
+        *program.FAKES,
         *sorted(XRCE.glob("*.c")),
         *program.runtime_sources(),
     ]
@@ -83,7 +83,7 @@ def session_tests(client: tuple[Path, list[str]], tmp_path_factory: pytest.TempP
         tmp_path_factory.mktemp("xrce_session") / "session_tests",
         [*sources, archive],
         options=("-O1", *program.ADDRESS_SANITIZER, *options),
-        includes=[XRCE, HERE],
+        includes=[XRCE, HERE, AGENT],
     )
     return output
 

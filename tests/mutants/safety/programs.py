@@ -15,7 +15,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from tests.checkout import ROOT
-from tests.runtime.program import COMPONENTS, RUNTIME, component_sources, names_in, runtime_sources
+from tests.runtime.program import COMPONENTS, FAKES, PORT, RUNTIME, component_sources, names_in, runtime_sources
 from tests.runtime.program import SOURCES as RUNTIME_TESTS
 
 from .table import SafetyMutant, apply
@@ -25,6 +25,7 @@ FOLDERS = [
     RUNTIME / "include",
     *sorted(path for path in (RUNTIME / "src").iterdir() if path.is_dir()),
     RUNTIME_TESTS,
+    PORT,
     *sorted(path for path in COMPONENTS.iterdir() if path.is_dir()),
 ]
 FLAGS = ["-std=c11", "-ffp-contract=off", "-pthread", "-w"]
@@ -34,7 +35,8 @@ CONSOLE = ROOT / "targets" / "middlewares" / "console"
 FIRMWARE = ROOT / "targets" / "platforms" / "firmware"
 
 HELPERS = [
-    *(RUNTIME_TESTS / name for name in ("fake_port.c", "fake_application.c", "motor.c")),
+    *FAKES,
+    PORT / "motor.c",
     CONSOLE_TESTS / "console_bench.c",
 ]
 LIBRARY = [

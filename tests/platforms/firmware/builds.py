@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from epg.generator.bootstrap import cache_folder
-from tests.emulator.toolchain import ROOT, Missing, locked
+from tests.doubles.toolchain import ROOT, Missing, locked
 
 HERE = Path(__file__).resolve().parent
 

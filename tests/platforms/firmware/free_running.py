@@ -8,9 +8,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, ClassVar
 
+from tests.doubles.mps2.qemu import Board
 from tests.middlewares.client import Lines
-
-from .qemu import Board
 
 ICOUNT = ("-icount", "shift=4,align=off,sleep=off")
 """An instruction takes 16 ns of the board's time, so that a busy computer delays the board as a whole, and not its

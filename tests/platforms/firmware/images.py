@@ -6,10 +6,10 @@ from __future__ import annotations
 from functools import partial
 from pathlib import Path
 
-from tests.emulator.toolchain import skip_if_missing, tool
+from tests.doubles.mps2.qemu import qemu
+from tests.doubles.toolchain import skip_if_missing, tool
 
 from .builds import HERE, PROCESSORS, build
-from .qemu import qemu
 
 MACHINES = {"m3": "mps2-an385", "m4f": "mps2-an386", "m7": "mps2-an500"}
 """QEMU's machine for each processor."""

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from .qemu import Board, receive
+from tests.doubles.mps2.qemu import Board, receive
 
 SIGNALS = (
     *(f"inputs.{name}" for name in ("position_pan", "position_tilt", "setpoint_pan", "setpoint_tilt")),

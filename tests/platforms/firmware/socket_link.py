@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 import socket
 
-from tests.xrce_agent.links import SerialLink
+from tests.doubles.xrce_agent.links import SerialLink
 
 
 class SocketLink(SerialLink):

@@ -9,7 +9,7 @@ from functools import partial
 
 import pytest
 
-from tests.emulator.toolchain import skip_if_missing, tool
+from tests.doubles.toolchain import skip_if_missing, tool
 
 from .builds import HERE, PROCESSORS, build, needed
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.program import (
+    FAKES,
     ROOT,
-    SOURCES,
     compile_program,
     component_sources,
     names_in,
@@ -23,8 +23,7 @@ PLATFORM = ROOT / "targets" / "platforms" / "firmware"
 
 @pytest.fixture(scope="module")
 def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    fakes = [SOURCES / "fake_port.c", SOURCES / "fake_application.c"]
-    sources = [TESTS, *fakes, PLATFORM / "src" / "firmware.c", *runtime_sources(), *component_sources()]
+    sources = [TESTS, *FAKES, PLATFORM / "src" / "firmware.c", *runtime_sources(), *component_sources()]
     folder = tmp_path_factory.mktemp("firmware")
     return compile_program(folder / "tests", sources, includes=[PLATFORM / "include", PLATFORM / "src"])
 

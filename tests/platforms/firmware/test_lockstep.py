@@ -17,12 +17,12 @@ from epg.runs.executable import run_executable
 from epg.runs.recording import read_table
 from epg.runs.setpoint_file import SetpointRow, setpoint_rows, write_setpoints
 from epg.simulate.load_scenario import load_scenario
-from tests.emulator.toolchain import ROOT, skip_if_missing
+from tests.doubles.mps2.qemu import Board
+from tests.doubles.toolchain import ROOT, skip_if_missing
 
 from .builds import HERE, PROCESSORS, build
 from .images import MACHINES, image
 from .lockstep import SIGNALS, run
-from .qemu import Board
 
 DURATION = 6.0
 """Seconds: homing from the example's first angles, and a third of its motion profile's first motion."""

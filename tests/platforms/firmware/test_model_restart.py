@@ -10,8 +10,9 @@ import struct
 
 import pytest
 
+from tests.doubles.mps2.qemu import Board, receive
+
 from .images import MACHINES, image
-from .qemu import Board, receive
 
 RUNS, CYCLES = 3, 50
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.xrce_agent import Agent, float64, read_float64
+from tests.doubles.xrce_agent import Agent, float64, read_float64
 
 from .free_running import FreeRunning
 from .socket_link import SocketLink

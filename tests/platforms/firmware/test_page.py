@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests.catalog.test_how_tos import follow, read, steps
-from tests.emulator.toolchain import arm_gcc, skip_if_missing, tool
+from tests.doubles.toolchain import arm_gcc, skip_if_missing, tool
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[2]

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.runtime.program import SOURCES, compile_program, names_in, run_program, runtime_sources
+from tests.runtime.program import FAKES, compile_program, names_in, run_program, runtime_sources
 
 from .program import CONSOLE, HOST, PROGRAMS
 
@@ -22,7 +22,7 @@ MANY = 1_000_000
 @pytest.fixture(scope="module")
 def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
     sources = [TESTS, PROGRAMS / "udp_client.c", BENCH / "console_bench.c"]
-    sources += [SOURCES / "fake_port.c", SOURCES / "fake_application.c", *runtime_sources(), *CONSOLE.glob("*.c")]
+    sources += [*FAKES, *runtime_sources(), *CONSOLE.glob("*.c")]
     links = HOST / "src" / "links"
     sources += [links / "blake2s.c", links / "udp_address.c", *(links / "linux").glob("udp_*.c")]
     includes = [HOST / "src", PROGRAMS, CONSOLE, BENCH]

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import ROOT, arm_gcc, skip_if_missing, tool
+from tests.doubles.toolchain import ROOT, arm_gcc, skip_if_missing, tool
 from tests.platforms.pico.compiled import STRICT
 from tests.runtime.program import RUNTIME, compile_program, run_program
 
@@ -47,7 +47,7 @@ def test_control_on_one_core_compiles_for_a_cortex_m3(tmp_path: Path) -> None:
     """QEMU runs it on a Cortex-M4F and on a Cortex-M7: tests/platforms/one_core."""
     skip_if_missing(arm_gcc, core)
     one_core = MCU / "one_core"
-    family = HERE.parent / "one_core" / "targets" / "families" / "mps2"
+    family = ROOT / "tests" / "doubles" / "mps2" / "targets" / "families" / "mps2"
     (tmp_path / "epg_mps2_target.h").write_text("#define EPG_MPS2_MIDDLEWARE_STACK 2048\n", encoding="utf-8")
     folders = [tmp_path, family / "include", one_core / "include"]
     options = [*(f"-I{folder}" for folder in folders), "-isystem", str(core() / "CMSIS" / "Core" / "Include")]

@@ -12,12 +12,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from unittest import mock
 
-from tests.emulator.toolchain import skip_if_missing, tool
+from tests.doubles.mps2.qemu import qemu
+from tests.doubles.toolchain import skip_if_missing, tool
 from tests.platforms.firmware.builds import PROCESSORS, build
 from tests.platforms.firmware.free_running import FreeRunning
-from tests.platforms.firmware.qemu import qemu
 
 HERE = Path(__file__).resolve().parent
+TARGETS = HERE.parents[1] / "doubles" / "mps2" / "targets"
 BOARDS = {"mps2_an386": "m4f", "mps2_an500": "m7"}
 """The processor of each board."""
 ORDERS = 2
@@ -61,7 +62,7 @@ def image(board: str, platform: str, controller: str = "jiwy", **settings: str) 
     needs = ("freertos_kernel", "micro_xrce_dds_client", "micro_cdr", "cmsis_core")
     processor = PROCESSORS[BOARDS[board]]
     skip_if_missing(qemu, lambda: processor.tool("gcc"), *(lambda name=name: tool(name) for name in needs))
-    with mock.patch.dict(os.environ, {"EPG_TARGETS_PATH": str(HERE / "targets")}):
+    with mock.patch.dict(os.environ, {"EPG_TARGETS_PATH": str(TARGETS)}):
         folder = build(processor, HERE / "program", BOARD=board, PLATFORM=platform, CONTROLLER=controller, **settings)
     return folder / "program"
 

@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 from tests.cmake.project import ROOT
-from tests.emulator.toolchain import skip_if_missing, tool
+from tests.doubles.toolchain import skip_if_missing, tool
+from tests.doubles.xrce_agent import Agent, float64, read_float64
 from tests.platforms.firmware.builds import PROCESSORS
 from tests.platforms.firmware.socket_link import SocketLink
-from tests.xrce_agent import Agent, float64, read_float64
 
 from .board import HERE, OneCore, image
 

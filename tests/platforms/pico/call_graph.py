@@ -13,7 +13,7 @@ from bisect import bisect_right
 from dataclasses import dataclass
 from pathlib import Path
 
-from tests.platforms.pico.images import binutils
+from tests.doubles.toolchain import binutils
 
 _BRANCH = re.compile(r"\s*[0-9a-f]+:\s+(?:b|cb)[a-z.]*\s+(?:r\d+, )?([0-9a-f]+) <")
 _LITERAL = re.compile(r"\s*[0-9a-f]+:\s+\.word\s+0x([0-9a-f]{8})")

@@ -8,7 +8,7 @@ import shlex
 import subprocess
 from pathlib import Path
 
-from tests.emulator.toolchain import ROOT
+from tests.doubles.toolchain import ROOT
 
 STRICT = ("-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Werror")
 NOT_OURS = "_export"

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
 
-from tests.emulator.emulator import Emulator
+from tests.doubles.rp2040.emulator import Emulator
 from tests.platforms.pico.closed_loop.robot import AXES, connect
 
 INSTANTS = 8

@@ -4,12 +4,11 @@
 from __future__ import annotations
 
 import re
-import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
-from tests.emulator.build import build
-from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js, skip_if_missing, tool
+from tests.doubles.rp2040.build import build
+from tests.doubles.toolchain import arm_gcc, binutils, node, pico_sdk, rp2040js, skip_if_missing, tool
 
 PROJECT = "tests/platforms/pico/project"
 BOARDS = ("pico", "pico2")
@@ -59,9 +58,3 @@ def ram_of(elf: Path) -> int:
         if section and 0x20000000 <= int(section[1], 16) < 0x30000000:
             total += int(section[2], 16)
     return total
-
-
-def binutils(program: str, *arguments: str) -> str:
-    """The output of a program of the toolchain."""
-    path = arm_gcc().parent / f"arm-none-eabi-{program}"
-    return subprocess.run([path, *arguments], capture_output=True, text=True, check=True).stdout

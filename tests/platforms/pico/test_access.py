@@ -8,8 +8,9 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.emulator.emulator import Emulator
-from tests.platforms.pico.images import binutils, images, skip_unless_emulated
+from tests.doubles.rp2040.emulator import Emulator
+from tests.doubles.toolchain import binutils
+from tests.platforms.pico.images import images, skip_unless_emulated
 
 INPUTS = ("position_pan", "position_tilt", "setpoint_pan", "setpoint_tilt")
 KP = "Pan\\PID\\kp"

@@ -7,7 +7,7 @@ from itertools import product
 
 import pytest
 
-from tests.emulator.build import build
+from tests.doubles.rp2040.build import build
 from tests.platforms.pico.compiled import own_sources, problems
 from tests.platforms.pico.images import PROJECT, TARGETS, images, ram_of, size_of, skip_unless_buildable
 

@@ -11,7 +11,7 @@ import re
 
 import pytest
 
-from tests.emulator.emulator import Emulator
+from tests.doubles.rp2040.emulator import Emulator
 from tests.platforms.pico.images import PLATFORMS, images, skip_unless_emulated
 
 PAN_COUNT = math.pi / 1112

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import ROOT, arm_gcc, pico_sdk, skip_if_missing, tool
+from tests.doubles.toolchain import ROOT, arm_gcc, pico_sdk, skip_if_missing, tool
 from tests.platforms.pico.images import freertos_kernel, skip_unless_buildable
 
 SDK = """

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.emulator.emulator import Emulator
+from tests.doubles.rp2040.emulator import Emulator
 from tests.platforms.pico.images import images, skip_unless_emulated
 
 START, STOP, LAUNCH, LAUNCH_WITH_STACK, RESET = range(1, 6)

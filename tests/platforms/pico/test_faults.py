@@ -13,7 +13,7 @@ from contextlib import contextmanager
 
 import pytest
 
-from tests.emulator.emulator import CYCLES_PER_MILLISECOND, Emulator
+from tests.doubles.rp2040.emulator import CYCLES_PER_MILLISECOND, Emulator
 from tests.platforms.pico.images import PLATFORMS, images, skip_unless_emulated
 
 VALUE, DIRECTION_A, DIRECTION_B, LAMP = 2, 7, 8, 15

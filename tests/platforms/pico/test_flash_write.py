@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import pytest
 
-from tests.emulator.build import build
-from tests.emulator.emulator import CYCLES_PER_MILLISECOND, Emulator
+from tests.doubles.rp2040.build import build
+from tests.doubles.rp2040.emulator import CYCLES_PER_MILLISECOND, Emulator
 from tests.platforms.pico.closed_loop.robot import AXES, WRAP_EXCEPTION, connect
 from tests.platforms.pico.images import PLATFORMS, images, skip_unless_emulated
 

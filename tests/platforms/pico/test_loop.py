@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.emulator.emulator import CYCLES_PER_MILLISECOND, Emulator
+from tests.doubles.rp2040.emulator import CYCLES_PER_MILLISECOND, Emulator
 from tests.platforms.pico.images import PLATFORMS, images, skip_unless_emulated
 
 PERIOD = CYCLES_PER_MILLISECOND

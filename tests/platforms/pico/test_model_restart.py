@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.emulator.emulator import Emulator
+from tests.doubles.rp2040.emulator import Emulator
 from tests.platforms.pico.images import PLATFORMS, images, skip_unless_emulated
 
 RUNS = 3

@@ -10,8 +10,9 @@ import re
 
 import pytest
 
+from tests.doubles.toolchain import binutils
 from tests.platforms.pico.call_graph import FLASH, RAM, Image, Symbol
-from tests.platforms.pico.images import TARGETS, binutils, images, skip_unless_buildable
+from tests.platforms.pico.images import TARGETS, images, skip_unless_buildable
 
 CYCLE = ("on_wrap", "application", "sleep_between_ticks", "on_hard_fault")
 """The handler of the tick, the table of the generated functions that it calls, the wait between ticks, and faults."""

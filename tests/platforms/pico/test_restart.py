@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.emulator.emulator import Emulator
+from tests.doubles.rp2040.emulator import Emulator
 from tests.platforms.pico.images import PLATFORMS, images, skip_unless_emulated
 
 STOP, START, STOP_WITHIN = 7, 8, 9

@@ -12,10 +12,10 @@ from __future__ import annotations
 from collections.abc import Hashable
 from typing import Any
 
+from tests.doubles.stm32.agenda import UNITS
+from tests.doubles.xrce_agent.framing import Deframer
 from tests.platforms.pico.xrce.agent import CLOCK, BoardAgent, UsbLink
 from tests.platforms.stm32.jiwy import Jiwy
-from tests.platforms.stm32.machine.agenda import UNITS
-from tests.xrce_agent.framing import Deframer
 
 
 class Steps:

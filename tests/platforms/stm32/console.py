@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import re
 
-from tests.emulator.toolchain import skip_if_missing, unicorn
+from tests.doubles.stm32.machine import Machine
+from tests.doubles.toolchain import skip_if_missing, unicorn
 from tests.platforms.stm32.images import images
-from tests.platforms.stm32.machine.machine import Machine
 
 
 def start(platform: str, name: str = "jiwy") -> Machine:

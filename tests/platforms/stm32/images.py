@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tests.emulator.toolchain import ROOT, arm_gcc, skip_if_missing, tool
+from tests.doubles.toolchain import ROOT, arm_gcc, skip_if_missing, tool
 from tests.platforms.firmware.builds import HERE as FIRMWARE
 from tests.platforms.firmware.builds import PROCESSORS, build
 

@@ -17,11 +17,11 @@ import re
 import struct
 from collections.abc import Callable, Collection
 
-from tests.emulator.toolchain import skip_if_missing, unicorn
+from tests.doubles.stm32.agenda import UNITS
+from tests.doubles.stm32.machine import Machine
+from tests.doubles.toolchain import skip_if_missing, unicorn
 from tests.platforms.pico.closed_loop.recording import INPUTS, OUTPUTS
 from tests.platforms.stm32.images import host, images
-from tests.platforms.stm32.machine.agenda import UNITS
-from tests.platforms.stm32.machine.machine import Machine
 from tests.platforms.stm32.masks import Masks
 
 SIGNALS = tuple(f"{way}.{name}" for way, names in (("inputs", INPUTS), ("outputs", OUTPUTS)) for name in names)

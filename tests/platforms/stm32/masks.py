@@ -15,9 +15,9 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from tests.platforms.pico.images import binutils
-from tests.platforms.stm32.machine.machine import Machine
-from tests.platforms.stm32.machine.nvic import FIRST
+from tests.doubles.stm32.machine import Machine
+from tests.doubles.stm32.nvic import FIRST
+from tests.doubles.toolchain import binutils
 
 FUNCTION = re.compile(r"^[0-9a-f]+ <(.+)>:$")
 UNMASK = re.compile(r"^\s*([0-9a-f]+):\t.*\tcpsie\ti")

@@ -14,14 +14,14 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import skip_if_missing
+from tests.doubles.toolchain import skip_if_missing
+from tests.doubles.xrce_agent.messages import float64, read_diagnostics, read_float64
+from tests.doubles.xrce_agent.real_agent import RealAgent, free_domain, on_loopback, program
 from tests.platforms.pico.xrce.agent import BoardAgent
 from tests.platforms.pico.xrce.checks import ENDS, PUBLISHED
 from tests.platforms.stm32.agent import agent_of
 from tests.platforms.stm32.images import PLATFORMS
 from tests.platforms.stm32.jiwy import AXES, RAD_PER_COUNT, Jiwy
-from tests.xrce_agent.messages import float64, read_diagnostics, read_float64
-from tests.xrce_agent.real_agent import RealAgent, free_domain, on_loopback, program
 
 HOMED = 900
 
@@ -138,9 +138,9 @@ class Cable:
 def test_it_is_a_node_of_the_real_agent(tmp_path: Path) -> None:
     """With a peer in CycloneDDS, and after the agent was killed and started again.  The agent runs in real time."""
     skip_if_missing(program)
-    pytest.importorskip("tests.ros2.packages", exc_type=ImportError)
-    from tests.ros2.messages import Float64_, numbers
-    from tests.ros2.peer import Peer
+    pytest.importorskip("tests.doubles.ros2_peer.packages", exc_type=ImportError)
+    from tests.doubles.ros2_peer.messages import Float64_, numbers
+    from tests.doubles.ros2_peer.peer import Peer
 
     jiwy = Jiwy("bare_metal", "xrce")
     jiwy.run(HOMED)

@@ -5,15 +5,15 @@ from __future__ import annotations
 
 import pytest
 
-from tests.emulator.toolchain import skip_if_missing, unicorn
+from tests.doubles.stm32 import f767
+from tests.doubles.stm32.clocks import AHB2ENR, CR, RNGEN
+from tests.doubles.stm32.f767 import Stm32f767
+from tests.doubles.stm32.machine import Machine
+from tests.doubles.stm32.rng import CR as RNG_CR
+from tests.doubles.stm32.rng import ENABLED
+from tests.doubles.toolchain import skip_if_missing, unicorn
 from tests.platforms.stm32.console import ask, boot
 from tests.platforms.stm32.images import images
-from tests.platforms.stm32.machine import f767
-from tests.platforms.stm32.machine.clocks import AHB2ENR, CR, RNGEN
-from tests.platforms.stm32.machine.f767 import Stm32f767
-from tests.platforms.stm32.machine.machine import Machine
-from tests.platforms.stm32.machine.rng import CR as RNG_CR
-from tests.platforms.stm32.machine.rng import ENABLED
 
 HSI48ON = 1 << 12
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import pytest
 
+from tests.doubles.stm32.image import Image
 from tests.platforms.pico.compiled import own_sources, problems
 from tests.platforms.stm32.images import PLATFORMS, images
-from tests.platforms.stm32.machine.image import Image
 
 H743, F767 = "nucleo_h743zi", "nucleo_f767zi"
 BUILDS = [(H743, platform, middleware) for platform in PLATFORMS for middleware in ("console", "xrce")]

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import pytest
 
+from tests.doubles.stm32.machine import Machine, PowerCut
 from tests.platforms.stm32.console import ask, boot, start
 from tests.platforms.stm32.images import PLATFORMS
-from tests.platforms.stm32.machine.machine import Machine, PowerCut
 
 NAME = "Pan\\PID\\kp"
 DAMAGED = 68

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import pytest
 
+from tests.doubles.stm32.agenda import UNITS
+from tests.doubles.stm32.machine import Machine
 from tests.platforms.stm32.console import ask, start, stats
 from tests.platforms.stm32.images import PLATFORMS
-from tests.platforms.stm32.machine.agenda import UNITS
-from tests.platforms.stm32.machine.machine import Machine
 
 HALF = 0x8000
 

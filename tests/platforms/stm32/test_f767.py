@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import pytest
 
-from tests.emulator.toolchain import skip_if_missing, unicorn
+from tests.doubles.stm32.f767 import Stm32f767
+from tests.doubles.stm32.machine import PowerCut
+from tests.doubles.stm32.usb_host import UsbHost
+from tests.doubles.toolchain import skip_if_missing, unicorn
 from tests.platforms.stm32.console import ask, boot, stats
 from tests.platforms.stm32.images import PLATFORMS, images
-from tests.platforms.stm32.machine.f767 import Stm32f767
-from tests.platforms.stm32.machine.machine import PowerCut
-from tests.platforms.stm32.machine.usb_host import UsbHost
 from tests.platforms.stm32.test_faults import (
     ENDLESS,
     UNDEFINED,

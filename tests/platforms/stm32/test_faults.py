@@ -8,12 +8,12 @@ import struct
 
 import pytest
 
+from tests.doubles.stm32.agenda import UNITS
+from tests.doubles.stm32.machine import WATCHDOG, Machine
 from tests.platforms.pico.robot_faults.test_encoders import COASTING, MODEL_WRONG, RUNAWAY, STALL_TIME
 from tests.platforms.stm32.console import boot, start, stats
 from tests.platforms.stm32.images import PLATFORMS
 from tests.platforms.stm32.jiwy import MOTORS, RAD_PER_COUNT, Jiwy, motors_are_off
-from tests.platforms.stm32.machine.agenda import UNITS
-from tests.platforms.stm32.machine.machine import WATCHDOG, Machine
 
 UNDEFINED, ENDLESS = b"\x00\xde", b"\xfe\xe7"
 """UDF, and a branch to itself."""

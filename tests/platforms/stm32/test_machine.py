@@ -7,8 +7,8 @@ import time
 
 import pytest
 
-from .machine.build import small
-from .machine.machine import Machine
+from tests.doubles.stm32.build import small
+from tests.doubles.stm32.machine import Machine
 
 
 def test_interrupts_nest_by_priority_and_masks() -> None:

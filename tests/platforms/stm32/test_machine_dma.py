@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import pytest
 
-from .machine.build import small
-from .machine.machine import Machine
+from tests.doubles.stm32.build import small
+from tests.doubles.stm32.machine import Machine
 
 CACHED, CLEAN, DROP, UNCACHED_REGION, IN_DTCM, COPY = 1, 2, 4, 8, 16, 32
 

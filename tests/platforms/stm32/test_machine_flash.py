@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import pytest
 
-from .machine.build import small
-from .machine.flash import BANK, DBECCERR, PGSERR, SECTOR
-from .machine.machine import Machine, PowerCut
+from tests.doubles.stm32.build import small
+from tests.doubles.stm32.flash import BANK, DBECCERR, PGSERR, SECTOR
+from tests.doubles.stm32.machine import Machine, PowerCut
 
 UNLOCK, ERASE, PROGRAM, READ, READ_GUARDED = range(1, 6)
 LAST = BANK + 7 * SECTOR

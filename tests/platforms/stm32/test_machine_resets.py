@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import pytest
 
-from .machine.build import small
-from .machine.machine import POWER_ON, SOFTWARE, WATCHDOG, Machine
+from tests.doubles.stm32.build import small
+from tests.doubles.stm32.machine import POWER_ON, SOFTWARE, WATCHDOG, Machine
 
 RESTART, START_WATCHDOG, FEED, CHANGE_CACHED = range(1, 5)
 

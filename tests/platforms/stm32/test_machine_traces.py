@@ -4,13 +4,15 @@
 from __future__ import annotations
 
 import struct
+from pathlib import Path
 
-from tests.emulator.toolchain import skip_if_missing
+from tests.doubles.mps2.qemu import Board, qemu, receive
+from tests.doubles.stm32.build import small
+from tests.doubles.stm32.machine import Machine
+from tests.doubles.toolchain import skip_if_missing
 from tests.platforms.firmware.free_running import ICOUNT
-from tests.platforms.firmware.qemu import Board, qemu, receive
-from tests.platforms.stm32.machine.build import small
-from tests.platforms.stm32.machine.machine import Machine
 
+MPS2 = Path(__file__).resolve().parents[1] / "firmware" / "mps2" / "mps2.ld"
 LIMIT = 120_000
 """Words of the log in ``traces.c``."""
 BASIC_FRAME = 0x10
@@ -26,7 +28,7 @@ def _emulated() -> tuple[int, ...]:
 
 
 def _by_qemu() -> tuple[int, ...]:
-    with Board("mps2-an500", small("traces", mps2=True), uarts=1, options=ICOUNT) as board:
+    with Board("mps2-an500", small("traces", mps2=MPS2), uarts=1, options=ICOUNT) as board:
         (count,) = struct.unpack("<I", receive(board.lines[0], 4))
         return struct.unpack(f"<{count}I", receive(board.lines[0], 4 * count))
 

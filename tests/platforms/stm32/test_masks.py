@@ -7,11 +7,11 @@ import re
 
 import pytest
 
-from tests.emulator.toolchain import ROOT
+from tests.doubles.stm32.nvic import FIRST
+from tests.doubles.toolchain import ROOT
 from tests.platforms.stm32.agent import agent_of
 from tests.platforms.stm32.images import PLATFORMS
 from tests.platforms.stm32.jiwy import Jiwy
-from tests.platforms.stm32.machine.nvic import FIRST
 from tests.platforms.stm32.masks import Masks
 
 PAGE = ROOT / "docs" / "boards" / "nucleo_h743zi.md"

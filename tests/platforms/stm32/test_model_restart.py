@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import pytest
 
-from tests.emulator.toolchain import skip_if_missing, unicorn
+from tests.doubles.stm32.machine import Machine
+from tests.doubles.toolchain import skip_if_missing, unicorn
 from tests.platforms.stm32.images import PLATFORMS, images
-from tests.platforms.stm32.machine.machine import Machine
 
 CYCLES = 100
 ENABLED_WITHIN = 30

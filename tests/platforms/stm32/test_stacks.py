@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import ROOT
+from tests.doubles.toolchain import ROOT
 from tests.platforms.stm32.console import ask, start
 from tests.platforms.stm32.images import PLATFORMS, images
 from tests.platforms.stm32.stack_bound import bound, functions

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import skip_if_missing, unicorn
+from tests.doubles.stm32.clocks import CR, REVISION_Y
+from tests.doubles.stm32.dma import CR as DMA_CR
+from tests.doubles.stm32.dma import MEMORY_STEPS as MINC
+from tests.doubles.stm32.machine import Machine
+from tests.doubles.stm32.timers import CEN, CNT, CR1
+from tests.doubles.toolchain import skip_if_missing, unicorn
 from tests.platforms.stm32.images import PLATFORMS, images
-from tests.platforms.stm32.machine.clocks import CR, REVISION_Y
-from tests.platforms.stm32.machine.dma import CR as DMA_CR
-from tests.platforms.stm32.machine.dma import MEMORY_STEPS as MINC
-from tests.platforms.stm32.machine.machine import Machine
-from tests.platforms.stm32.machine.timers import CEN, CNT, CR1
 
 HSE_READY = 1 << 17
 OTHER_STREAMS = 32

@@ -8,18 +8,18 @@ import struct
 
 import pytest
 
-from tests.emulator.toolchain import skip_if_missing, unicorn
+from tests.doubles.stm32.clocks import AHB1ENR, REVISION_Y
+from tests.doubles.stm32.machine import Machine
+from tests.doubles.stm32.nvic import FIRST
+from tests.doubles.stm32.usb import INTERRUPT
+from tests.doubles.stm32.usb_host import UsbHost
+from tests.doubles.toolchain import skip_if_missing, unicorn
+from tests.doubles.xrce_agent.messages import float64
 from tests.platforms.pico.closed_loop.recording import INPUTS
 from tests.platforms.stm32.images import PLATFORMS, images
-from tests.platforms.stm32.machine.clocks import AHB1ENR, REVISION_Y
-from tests.platforms.stm32.machine.machine import Machine
-from tests.platforms.stm32.machine.nvic import FIRST
-from tests.platforms.stm32.machine.usb import INTERRUPT
-from tests.platforms.stm32.machine.usb_host import UsbHost
 from tests.platforms.stm32.masks import Masks
 from tests.platforms.stm32.test_masks import FAILURES, documented
 from tests.platforms.stm32.usb_agent import agent_on_usb
-from tests.xrce_agent.messages import float64
 
 STACK_RESERVE = 1.25
 """A stack must be at least this many times as large as its largest use."""

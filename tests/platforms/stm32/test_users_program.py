@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import skip_if_missing, unicorn
+from tests.doubles.stm32.machine import Machine
+from tests.doubles.stm32.nvic import FIRST
+from tests.doubles.toolchain import skip_if_missing, unicorn
 from tests.examples.test_existing_cubemx_repository import configure, repository_in, run
-from tests.platforms.stm32.machine.machine import Machine
-from tests.platforms.stm32.machine.nvic import FIRST
 
 COUNTS_PER_RADIAN = 4096 * 18 / math.tau
 """Of controller/turntable.tcf."""

@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Hashable
 from typing import Any
 
+from tests.doubles.stm32.agenda import UNITS
+from tests.doubles.stm32.machine import Machine
+from tests.doubles.stm32.usb_host import UsbHost
+from tests.doubles.xrce_agent.framing import Deframer
 from tests.platforms.pico.xrce.agent import CLOCK, BoardAgent, UsbLink
-from tests.platforms.stm32.machine.agenda import UNITS
-from tests.platforms.stm32.machine.machine import Machine
-from tests.platforms.stm32.machine.usb_host import UsbHost
-from tests.xrce_agent.framing import Deframer
 
 SLICE = 0.5
 """Milliseconds between two looks at what has arrived."""

@@ -7,7 +7,7 @@ from collections import Counter
 from functools import partial
 from pathlib import Path
 
-from tests.emulator.toolchain import arm_gcc, node, rp2040js, skip_if_missing, tool
+from tests.doubles.toolchain import arm_gcc, node, rp2040js, skip_if_missing, tool
 from tests.platforms.pico.closed_loop.robot import WRAP_EXCEPTION
 from tests.platforms.pico.xrce.board import Jiwy
 from tests.zephyr.workspace import build, c_library, workspace

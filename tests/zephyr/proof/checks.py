@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from tests.emulator.emulator import CYCLES_PER_MILLISECOND
+from tests.doubles.rp2040.emulator import CYCLES_PER_MILLISECOND
 from tests.platforms.pico.closed_loop.robot import PERIOD
 from tests.platforms.pico.xrce.checks import assert_nothing_counted
 

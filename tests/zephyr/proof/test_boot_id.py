@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from tests.emulator.emulator import Emulator
+from tests.doubles.rp2040.emulator import Emulator
 
 from .board import image, skip_unless_emulated
 

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import arm_gcc, skip_if_missing, tool, unicorn
-from tests.zephyr.stm32h743 import Stm32h743
+from tests.doubles.stm32.stm32h743 import Stm32h743
+from tests.doubles.toolchain import arm_gcc, skip_if_missing, tool, unicorn
 from tests.zephyr.workspace import build, c_library, workspace
 
 ENCODERS = {"encoder_pan": ("TIM4", ("D", 12), ("D", 13), 2), "encoder_tilt": ("TIM8", ("C", 6), ("C", 7), 3)}

@@ -14,9 +14,9 @@ from statistics import mean
 
 import pytest
 
-from tests.emulator.toolchain import arm_gcc, skip_if_missing, tool, unicorn
+from tests.doubles.stm32.stm32h743 import Stm32h743
+from tests.doubles.toolchain import arm_gcc, skip_if_missing, tool, unicorn
 from tests.zephyr.proof.test_h743 import ENCODERS, OUTPUTS
-from tests.zephyr.stm32h743 import Stm32h743
 from tests.zephyr.workspace import build, c_library, workspace
 
 CYCLES = 200

@@ -8,12 +8,12 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.emulator.emulator import CYCLES_PER_MILLISECOND
+from tests.doubles.rp2040.emulator import CYCLES_PER_MILLISECOND
+from tests.doubles.xrce_agent.messages import read_diagnostics
 from tests.platforms.pico.closed_loop.robot import AXES
 from tests.platforms.pico.xrce.board import CONSOLE_PORT
 from tests.platforms.pico.xrce.checks import assert_it_tracks
 from tests.platforms.pico.xrce.scenarios import SCENARIOS, assert_holds, hold
-from tests.xrce_agent.messages import read_diagnostics
 
 from .board import ZephyrJiwy, skip_unless_emulated
 from .checks import assert_undisturbed

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.build import build
-from tests.emulator.emulator import Emulator
+from tests.doubles.rp2040.build import build
+from tests.doubles.rp2040.emulator import Emulator
 from tests.platforms.pico.images import skip_unless_emulated
 
 OK, WRONG_CLOCK = 0, 2

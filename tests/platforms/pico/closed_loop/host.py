@@ -15,7 +15,7 @@ from epg.runs.recording import read_table
 from epg.runs.scenario import Scenario
 from epg.runs.setpoint_file import setpoint_rows, write_setpoints
 from tests.cmake.built import built
-from tests.emulator.toolchain import locked
+from tests.doubles.toolchain import locked
 
 from .recording import Recording
 from .robot import AXES

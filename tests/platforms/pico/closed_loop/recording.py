@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from epg.runs.scenario import Scenario
-from tests.emulator.emulator import Emulator
+from tests.doubles.rp2040.emulator import Emulator
 
 from .robot import AXES, PERIOD, connect, first_tick
 

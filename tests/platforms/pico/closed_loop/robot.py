@@ -13,7 +13,7 @@ import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
-from tests.emulator.emulator import CYCLES_PER_MILLISECOND, Emulator
+from tests.doubles.rp2040.emulator import CYCLES_PER_MILLISECOND, Emulator
 
 PERIOD = CYCLES_PER_MILLISECOND
 """Cycles of 8 ns in a control period."""

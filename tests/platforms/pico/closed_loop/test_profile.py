@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.toolchain import ROOT
+from tests.doubles.toolchain import ROOT
 from tests.platforms.pico.images import PLATFORMS, skip_unless_emulated
 
 from .checks import assert_all_is_well

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.build import build
+from tests.doubles.rp2040.build import build
 from tests.platforms.pico.images import PROJECT, skip_unless_buildable, skip_unless_emulated
 from tests.platforms.pico.xrce.board import Jiwy
 

@@ -7,7 +7,8 @@ import random
 
 import pytest
 
-from tests.platforms.pico.images import binutils, skip_unless_emulated
+from tests.doubles.toolchain import binutils
+from tests.platforms.pico.images import skip_unless_emulated
 from tests.platforms.pico.stacks.workload import COMMANDS
 from tests.platforms.pico.test_faults import START, STOP, order
 from tests.platforms.pico.uart.test_node import check_serial_line, node_image

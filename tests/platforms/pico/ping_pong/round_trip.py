@@ -16,11 +16,11 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
-from tests.emulator.build import build
-from tests.emulator.emulator import Emulator
-from tests.emulator.toolchain import ROOT
+from tests.doubles.rp2040.build import build
+from tests.doubles.rp2040.emulator import Emulator
+from tests.doubles.toolchain import ROOT
+from tests.doubles.xrce_agent.messages import float64, read_float64
 from tests.platforms.pico.xrce.agent import BoardAgent
-from tests.xrce_agent.messages import float64, read_float64
 
 EXAMPLE = "examples/ping_pong"
 sys.path.insert(0, str(ROOT / EXAMPLE / "peer"))

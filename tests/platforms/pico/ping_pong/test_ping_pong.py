@@ -7,11 +7,11 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.emulator.toolchain import skip_if_missing
+from tests.doubles.toolchain import skip_if_missing
+from tests.doubles.xrce_agent.bare import libraries
 from tests.platforms.pico.closed_loop.robot import PERIOD
 from tests.platforms.pico.images import PLATFORMS, skip_unless_emulated
 from tests.platforms.pico.timing.checks import LARGEST_ENTRY
-from tests.xrce_agent.bare import libraries
 
 from .round_trip import Board, Combination, Run, programs, summarise, table
 

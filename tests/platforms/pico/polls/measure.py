@@ -19,12 +19,12 @@ from typing import Any
 from epg.live.client import Rows
 from epg.live.frames import Decoder, encode
 from epg.live.rows import Stream
-from tests.emulator.build import build
-from tests.emulator.emulator import CYCLES_PER_MILLISECOND, Emulator
+from tests.doubles.rp2040.build import build
+from tests.doubles.rp2040.emulator import CYCLES_PER_MILLISECOND, Emulator
+from tests.doubles.xrce_agent.messages import float64
 from tests.platforms.pico.closed_loop.robot import connect
 from tests.platforms.pico.images import images
 from tests.platforms.pico.xrce.agent import BoardAgent, UartLink, UsbLink
-from tests.xrce_agent.messages import float64
 
 LINES = "pan_subscriber=0.4 tilt_subscriber=0.4\nstats\nports\nhelp\nnonsense\nget\nwatch\n"
 """A session on the console, repeated as fast as the line takes it."""

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from tests.connect.page import serving, session_of
 from tests.connect.test_live import Events
-from tests.emulator.emulator import Emulator
+from tests.doubles.rp2040.emulator import Emulator
 from tests.platforms.pico.images import images, skip_unless_emulated
 from tests.waiting import until
 

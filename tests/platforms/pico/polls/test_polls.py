@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from tests.emulator.emulator import CYCLES_PER_MILLISECOND
+from tests.doubles.rp2040.emulator import CYCLES_PER_MILLISECOND
 from tests.platforms.pico.images import PLATFORMS, skip_unless_emulated
 
 from .measure import CHANGE_MS, Polls, measure_live, measure_uart, measure_usb

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tests.emulator.emulator import Emulator
+from tests.doubles.rp2040.emulator import Emulator
 from tests.live.replays import Text, build_programs, cells, epg
 from tests.platforms.pico.images import images, skip_unless_emulated
 

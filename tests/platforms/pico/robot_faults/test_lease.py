@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 import pytest
 
 from epg.live.frames import Decoder, encode
-from tests.emulator.emulator import CYCLES_PER_MILLISECOND
+from tests.doubles.rp2040.emulator import CYCLES_PER_MILLISECOND
 from tests.platforms.pico.closed_loop.board import Board, image
 from tests.platforms.pico.closed_loop.robot import AXES
 from tests.platforms.pico.images import PLATFORMS, skip_unless_emulated

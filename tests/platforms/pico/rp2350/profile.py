@@ -8,10 +8,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
+from tests.doubles.rp2350.cortex_m33 import Processor
 from tests.platforms.pico.closed_loop.recording import INPUTS, OUTPUTS
 from tests.platforms.pico.closed_loop.robot import AXES, Axis
-
-from .cortex_m33 import Processor
 
 PERIOD_NS = 1_000_000
 SUBSCRIPTIONS = {"pan": 0, "tilt": 1}

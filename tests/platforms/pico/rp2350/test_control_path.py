@@ -13,15 +13,15 @@ import pytest
 
 from epg.generator.diagnostics import Diagnostics
 from epg.simulate.load_scenario import load_scenario
-from tests.emulator.build import build
-from tests.emulator.toolchain import ROOT, skip_if_missing, unicorn
+from tests.doubles.rp2040.build import build
+from tests.doubles.rp2350.cortex_m33 import COMPILER_ARITHMETIC, Processor
+from tests.doubles.toolchain import ROOT, skip_if_missing, unicorn
 from tests.platforms.pico.closed_loop.comparison import CONTROL
 from tests.platforms.pico.closed_loop.host import Columns, host_programs, simulated
 from tests.platforms.pico.closed_loop.recording import INPUTS, OUTPUTS
 from tests.platforms.pico.closed_loop.robot import AXES
 from tests.platforms.pico.images import PLATFORMS, PROJECT, skip_unless_buildable
 
-from .cortex_m33 import COMPILER_ARITHMETIC, Processor
 from .profile import PWM_TOP, cycles, decoder_counts, start
 
 SCENARIO = ROOT / "examples" / "jiwy" / "tracking.yaml"

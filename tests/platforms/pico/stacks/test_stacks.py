@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.emulator.emulator import Emulator
+from tests.doubles.rp2040.emulator import Emulator
 from tests.platforms.pico.closed_loop.board import image
 from tests.platforms.pico.images import PLATFORMS, images, skip_unless_emulated
 from tests.platforms.pico.stacks.workload import worst_of

@@ -22,12 +22,12 @@ from epg.generator.bootstrap import cache_folder
 from epg.generator.diagnostics import Diagnostics
 from epg.runs.scenario import Profile, ProfilePart
 from epg.system.load_system import load_system
-from tests.emulator.build import build
-from tests.emulator.emulator import CYCLES_PER_MILLISECOND
-from tests.emulator.toolchain import ROOT, locked
+from tests.doubles.rp2040.build import build
+from tests.doubles.rp2040.emulator import CYCLES_PER_MILLISECOND
+from tests.doubles.toolchain import ROOT, locked
+from tests.doubles.xrce_agent.messages import float64
 from tests.platforms.pico.closed_loop.robot import AXES, angle, connect
 from tests.ros2.correlation import Log, fine_lag
-from tests.xrce_agent.messages import float64
 
 from .system import DELAY, Member, System
 

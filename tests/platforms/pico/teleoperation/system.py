@@ -23,9 +23,9 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from tests.emulator.emulator import CYCLES_PER_MILLISECOND, Emulator
+from tests.doubles.rp2040.emulator import CYCLES_PER_MILLISECOND, Emulator
+from tests.doubles.xrce_agent.topics import Topics
 from tests.platforms.pico.xrce.agent import BoardAgent, Said, UsbLink
-from tests.xrce_agent.topics import Topics
 
 DELAY = 0.25
 """Milliseconds from a frame of a board at its agent to the frames that follow from it at the USB of the boards."""

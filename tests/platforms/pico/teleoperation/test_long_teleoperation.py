@@ -10,17 +10,17 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.emulator import Emulator
-from tests.emulator.toolchain import skip_if_missing
+from tests.doubles.rp2040.emulator import Emulator
+from tests.doubles.toolchain import skip_if_missing
+from tests.doubles.xrce_agent.agent import Agent
+from tests.doubles.xrce_agent.bare import libraries
+from tests.doubles.xrce_agent.links import DeviceLink
+from tests.doubles.xrce_agent.real_agent import RealAgent, free_domain, program
+from tests.doubles.xrce_agent.topics import Topics
 from tests.platforms.pico.closed_loop.recording import INPUTS
 from tests.platforms.pico.closed_loop.robot import AXES, connect
 from tests.platforms.pico.images import PLATFORMS, skip_unless_emulated
 from tests.platforms.pico.xrce.line import Line
-from tests.xrce_agent.agent import Agent
-from tests.xrce_agent.bare import libraries
-from tests.xrce_agent.links import DeviceLink
-from tests.xrce_agent.real_agent import RealAgent, free_domain, program
-from tests.xrce_agent.topics import Topics
 
 from .lags import ENUMERATED, START, Run, emulated, programs, simulated, simulators
 from .system import DELAY

@@ -16,7 +16,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from tests.emulator.emulator import Emulator
+from tests.doubles.rp2040.emulator import Emulator
 from tests.platforms.pico.closed_loop.robot import PERIOD, connect
 
 from .programs import Program

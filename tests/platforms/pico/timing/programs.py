@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from tests.emulator.build import build
+from tests.doubles.rp2040.build import build
 from tests.platforms.pico.images import freertos_kernel
 
 PROJECT = "benchmarks/pico"

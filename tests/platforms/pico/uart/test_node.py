@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.build import build
-from tests.emulator.emulator import Emulator
+from tests.doubles.rp2040.build import build
+from tests.doubles.rp2040.emulator import Emulator
+from tests.doubles.xrce_agent.messages import float64, read_float64
 from tests.platforms.pico.closed_loop.robot import AXES, angle, connect
 from tests.platforms.pico.images import PLATFORMS, skip_unless_emulated
 from tests.platforms.pico.xrce.agent import BoardAgent, UartLink
-from tests.xrce_agent.messages import float64, read_float64
 
 BAUD = 460800
 HOMED = 900

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.emulator.build import build
-from tests.emulator.emulator import Emulator
+from tests.doubles.rp2040.build import build
+from tests.doubles.rp2040.emulator import Emulator
 from tests.platforms.pico.compiled import own_sources, problems
 from tests.platforms.pico.images import PLATFORMS, TARGETS, skip_unless_buildable, skip_unless_emulated
 

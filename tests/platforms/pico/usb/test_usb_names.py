@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from tests.emulator.emulator import Emulator
+from tests.doubles.rp2040.emulator import Emulator
+from tests.doubles.usb_descriptors import STRING, text
 from tests.platforms.pico.images import images, skip_unless_emulated
-from tests.platforms.pico.usb.descriptors import STRING, text
 
 DEVICE = 1
 """USB 2.0, table 9-5."""

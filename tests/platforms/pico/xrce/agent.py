@@ -14,10 +14,10 @@ from collections.abc import Callable, Hashable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from tests.emulator.emulator import CYCLES_PER_MILLISECOND, Emulator
-from tests.xrce_agent.agent import Agent
-from tests.xrce_agent.framing import AGENT, Deframer, frame
-from tests.xrce_agent.topics import Endpoint, Topics
+from tests.doubles.rp2040.emulator import CYCLES_PER_MILLISECOND, Emulator
+from tests.doubles.xrce_agent.agent import Agent
+from tests.doubles.xrce_agent.framing import AGENT, Deframer, frame
+from tests.doubles.xrce_agent.topics import Endpoint, Topics
 
 CLOCK = 1000 * CYCLES_PER_MILLISECOND
 HEARTBEAT = 0.2

@@ -15,11 +15,11 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 from types import TracebackType
 
-from tests.emulator.emulator import Emulator
+from tests.doubles.rp2040.emulator import Emulator
+from tests.doubles.xrce_agent.messages import float64, read_float64
 from tests.platforms.pico.closed_loop.robot import AXES, angle, connect
 from tests.platforms.pico.images import images
 from tests.platforms.pico.timing.measure import MOTOR_SLICES, Timing, evaluate
-from tests.xrce_agent.messages import float64, read_float64
 
 from .agent import BoardAgent
 

@@ -7,10 +7,10 @@ import random
 from bisect import bisect_right
 from pathlib import Path
 
-from tests.emulator.build import build
-from tests.emulator.emulator import Emulator
-from tests.xrce_agent.latency import DELAYS, PROJECT, TOPIC, Step, duty, executable
-from tests.xrce_agent.messages import float64
+from tests.doubles.rp2040.build import build
+from tests.doubles.rp2040.emulator import Emulator
+from tests.doubles.xrce_agent.messages import float64
+from tests.middlewares.xrce.steps import DELAYS, PROJECT, TOPIC, Step, duty, executable
 
 from .agent import CLOCK, BoardAgent
 

@@ -14,7 +14,7 @@ import select
 import tty
 from collections.abc import Callable
 
-from tests.emulator.emulator import CYCLES_PER_MILLISECOND, Emulator
+from tests.doubles.rp2040.emulator import CYCLES_PER_MILLISECOND, Emulator
 
 from .board import AGENT_PORT
 

@@ -8,10 +8,10 @@ from collections.abc import Iterator
 
 import pytest
 
+from tests.doubles.xrce_agent.messages import float64, read_diagnostics
+from tests.doubles.xrce_agent.parameters import Parameters
 from tests.platforms.pico.closed_loop.robot import AXES
 from tests.platforms.pico.images import PLATFORMS, skip_unless_emulated
-from tests.xrce_agent.messages import float64, read_diagnostics
-from tests.xrce_agent.parameters import Parameters
 
 from .board import Jiwy
 from .checks import ENDS, assert_it_tracks, assert_undisturbed

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import pytest
 
-from tests.emulator.toolchain import skip_if_missing
+from tests.doubles.toolchain import skip_if_missing
+from tests.doubles.xrce_agent.bare import libraries
+from tests.middlewares.xrce.steps import PERIOD
 from tests.platforms.pico.images import PLATFORMS, skip_unless_emulated
 from tests.platforms.pico.timing.checks import LARGEST_ENTRY
-from tests.xrce_agent.bare import libraries
-from tests.xrce_agent.latency import PERIOD
 
 from .agent import CLOCK
 from .latency import measure, programs
