@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hooks of the build: they add files other than the Python package to a wheel, and list the packages that EPG needs.
 
-A wheel has copies of ``cmake/``, ``targets/``, ``schemas/``, Zephyr's module and the page about messages in
-``epg/_data``, and the schemas that editors read.  An editable install uses the files of the checkout, so a change there
-has an effect at once.  Both install ``share/EPG/cmake/EPGConfig.cmake``, where CMake searches for packages.
+A wheel has copies of ``cmake/``, ``targets/``, ``schemas/``, the folders of targets in ``integration/``, Zephyr's
+module and the page about messages in ``epg/_data``, and the schemas that editors read.  An editable install uses the
+files of the checkout, so a change there has an effect at once.  Both install ``share/EPG/cmake/EPGConfig.cmake``, where
+CMake searches for packages.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ JIWY = ("CMakeLists.txt", "README.md", "ideal_loop.py", "jiwy.bindings.yaml", "m
 PLANTS = ("plant", "plant.bindings.yaml")
 EXAMPLES = (*(f"examples/jiwy/{name}" for name in JIWY + PLANTS), *(f"examples/relbot/{name}" for name in PLANTS))
 """The example of the README, without a build folder in it, and the simulated robots that `epg new` writes."""
-DATA = ("cmake", "targets", "integration", "zephyr", "zephyr_module", "docs/errors.md", *EXAMPLES)
+DATA = ("cmake", "targets", "integration/20-sim", "zephyr", "zephyr_module", "docs/errors.md", *EXAMPLES)
 
 
 EXTRAS = {"zephyr": "zephyr", "plot": "plot", "ros": "ros", "mcap": "mcap", "test": "test_all"}
@@ -55,7 +56,8 @@ class EpgBuildHook(BuildHookInterface):
         assert found
         self.folder = Path(tempfile.mkdtemp(prefix="epg-wheel-"))
         if version != "editable":
-            for name in DATA:
+            parts = (folder.relative_to(root).as_posix() for folder in root.glob("integration/*/targets"))
+            for name in (*DATA, *parts):
                 build_data["force_include"][str(root / name)] = f"epg/_data/{name}"
             self._add_schemas(build_data["force_include"])
         forwarder = root / "cmake/forwarder"

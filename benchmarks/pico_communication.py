@@ -2,13 +2,12 @@
 """Measures the memory of communication on a Pico: size of JIWY's images by middleware, and the stack that is used.
 
 Each of the four targets is built without middleware, with the console, with xrce, and with xrce and the console, which
-is the predefined choice.  On FreeRTOS micro_ros with the console is added if EPG_TEST_MICRO_ROS_PICO names a
-libmicroros.  The stack is measured in RP2040 images in EPG's emulator, with an agent and a user at the other ends.
+is the predefined choice.  The stack is measured in RP2040 images in EPG's emulator, with an agent and a user at the
+other ends.
 """
 
 from __future__ import annotations
 
-import os
 import re
 from pathlib import Path
 
@@ -18,17 +17,13 @@ from report import Table, arguments, command_line, show
 from tests.doubles.rp2040.emulator import Emulator
 from tests.doubles.toolchain import arm_gcc, node, pico_sdk, rp2040js
 from tests.platforms.pico.images import freertos_kernel, images, ram_of, size_of
-from tests.platforms.pico.micro_ros.firmware import VARIABLE
-from tests.platforms.pico.micro_ros.firmware import firmware as micro_ros_firmware
 from tests.platforms.pico.xrce.agent import BoardAgent
 
-MICRO_ROS = "micro_ros_console"
 MIDDLEWARES = {
     "none": "none",
     "console": "console",
     "xrce": "xrce",
     "xrce_console": "xrce and console",
-    MICRO_ROS: "micro_ros and console",
 }
 TARGETS = {
     ("pico", "bare_metal"): "Pico, bare metal",
@@ -45,7 +40,7 @@ def main() -> None:
     options = arguments(__doc__, targets=len(TARGETS))
     need(pico_sdk, arm_gcc, node, rp2040js, freertos_kernel)
     chosen = list(TARGETS)[: options.targets]
-    rows = [row(*target, middleware) for target in chosen for middleware in MIDDLEWARES if possible(target, middleware)]
+    rows = [row(*target, middleware) for target in chosen for middleware in MIDDLEWARES]
     head = ["image", "middleware", "flash", "RAM", "of RAM", "stack used", "stack"]
     notes = [
         "Bytes. Executables that run from flash; code and constants of the control cycle are in both. RAM includes "
@@ -56,13 +51,7 @@ def main() -> None:
     show("pico_communication", [table], options.write, command_line("pico_communication"))
 
 
-def possible(target: tuple[str, str], middleware: str) -> bool:
-    return middleware != MICRO_ROS or (target[1] == "freertos" and VARIABLE in os.environ)
-
-
 def firmware(board: str, platform: str, middleware: str) -> Path:
-    if middleware == MICRO_ROS:
-        return micro_ros_firmware(board)
     return images(board, platform, "jiwy_firmware", middleware=middleware) / "jiwy_firmware.elf"
 
 

@@ -33,11 +33,7 @@ HANDWRITTEN = {
     "serial": "by hand, a serial port on USB",
     "client": "by hand, eProsima's client",
 }
-OTHERS = (
-    ("rclc: EPG's middleware micro_ros and console, FreeRTOS [1]", "157,028", "81,812"),
-    ("xrce and console in the same run [1]", "133,148", "53,820"),
-    ("published: Micro XRCE-DDS client, publisher and subscriber [2]", "less than 75,000", "about 3,000"),
-)
+OTHERS = (("published: Micro XRCE-DDS client, publisher and subscriber [1]", "less than 75,000", "about 3,000"),)
 """Programs that cannot be built here: text, and data with bss."""
 PARTS = (
     ("eProsima's client", r"libepg_micro_xrce_dds_client\.a"),
@@ -134,10 +130,7 @@ def comparison(ours: dict[str, Path], by_hand: dict[str, Path]) -> Table:
     notes = [
         "Same board, model and encoders. The program with eProsima's client has JIWY's four topics of values, "
         "without enabling, reset, time stamps and checks of received frames.",
-        "[1] [micro_ros](micro-ros.md#libmicroros): an earlier measurement, without services and parameters in "
-        "micro_ros. 32 kB of the text and 30 kB of the RAM are libmicroros, which EPG does not build. micro-ROS "
-        "publishes RAM of rclc, but not its text: <https://micro.ros.org/docs/concepts/benchmarking/memo_prof/>.",
-        "[2] <https://micro.ros.org/docs/concepts/middleware/Micro_XRCE-DDS/>: flash and RAM of the application.",
+        "[1] <https://micro.ros.org/docs/concepts/middleware/Micro_XRCE-DDS/>: flash and RAM of the application.",
     ]
     return Table("Text of JIWY beside other programs, bytes", head, rows, notes)
 

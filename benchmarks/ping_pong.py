@@ -45,7 +45,7 @@ FreeRTOS Pico 2 RPi5 best/best	3.55	2.46	12.83	3.85
 FreeRTOS Pico 2 RPi5 default/default	4.96	3.61	10.72	4.90"""
 """The thesis's table E.1 where both have the same QoS: name, mean, minimum, maximum, median in ms."""
 
-HARDWARE = "Boards on USB, micro-ROS, its agent and the peer on a Raspberry Pi 5: here for the order of size only."
+HARDWARE = "Boards on USB, their agent and the peer on a Raspberry Pi 5: here for the order of size only."
 
 
 def build(folder: Path, middleware: str) -> Path:

@@ -104,7 +104,7 @@ def round_trips(folder: Path, count: int) -> Table:
     notes = [
         "On one computer, over UDP on its loopback interface; through eProsima's agent a ping passes DDS as well, "
         "twice. The measuring program, in Python, is part of it.",
-        "The thesis's Nucleo-H743ZI with Zephyr and micro-ROS took 5.39 ms on average, on other hardware.",
+        "The thesis's Nucleo-H743ZI with Zephyr and rcl took 5.39 ms on average, on other hardware.",
     ]
     return Table("Round trip over XRCE, ms", head, rows, notes)
 

@@ -50,8 +50,9 @@ include("${CMAKE_CURRENT_LIST_DIR}/EPGSimulation.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/EPGSystem.cmake")
 # Libraries, and what families of chips define for projects: functions that find an SDK before project().  The user's
 # folders are loaded last, so a user's family may define a function of EPG's anew.
+_epg_own_roots(_epg_own)
 _epg_user_folders(_epg_roots)
-foreach(_epg_root "${CMAKE_CURRENT_LIST_DIR}/../targets" ${_epg_roots})
+foreach(_epg_root ${_epg_own} ${_epg_roots})
   file(GLOB _epg_files "${_epg_root}/libraries/*/library.cmake" "${_epg_root}/families/*/sdk.cmake")
   foreach(_epg_file IN LISTS _epg_files)
     include("${_epg_file}")

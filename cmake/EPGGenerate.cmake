@@ -285,9 +285,9 @@ endfunction()
 # _epg_fingerprint(<result>)
 #
 # Sets <result> to a hash that identifies this version of EPG.  For a wheel, pip's list of the hashes of its files is
-# read, else all files of the Python package and the schemas.  A run reads files in targets/, too; the generated file
-# <name>.cmake lists them.  A new file there can take precedence over one of them, so the names of all files there are
-# part of the hash.  All of this is done once per configure run.
+# read, else all files of the Python package and the schemas.  A run reads files in EPG's folders of targets, too; the
+# generated file <name>.cmake lists them.  A new file there can take precedence over one of them, so the names of all
+# files there are part of the hash.  All of this is done once per configure run.
 function(_epg_fingerprint result)
   get_property(fingerprint GLOBAL PROPERTY _EPG_FINGERPRINT)
   if(NOT fingerprint)
@@ -308,7 +308,12 @@ function(_epg_fingerprint result)
       list(FILTER files EXCLUDE REGEX "/(__pycache__/[^/]+|[.][^/]*)$") # bytecode, temporary files of editors
     endif()
     _epg_hash_of_files(fingerprint "${record}" ${files})
-    _epg_entries(names "${data}/targets")
+    _epg_own_roots(roots)
+    set(names "")
+    foreach(root IN LISTS roots)
+      _epg_entries(entries "${root}")
+      list(APPEND names ${entries})
+    endforeach()
     string(SHA256 fingerprint "${fingerprint}\n${names}")
     list(TRANSFORM names REPLACE "/[^/]*$" "" OUTPUT_VARIABLE folders) # faster than to ask whether each is a folder
     list(REMOVE_DUPLICATES folders)

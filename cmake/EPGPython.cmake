@@ -159,6 +159,17 @@ function(_epg_data_folder result)
   set(${result} "${above}" PARENT_SCOPE)
 endfunction()
 
+# _epg_own_roots(<result>)
+#
+# Sets <result> to the folders of targets that come with EPG: those in integration/, and targets/.  epg/generator/data.py
+# has the same list.
+function(_epg_own_roots result)
+  _epg_data_folder(data)
+  _epg_pattern(pattern "${data}")
+  file(GLOB roots "${pattern}/integration/*/targets")
+  set(${result} ${roots} "${data}/targets" PARENT_SCOPE)
+endfunction()
+
 # _epg_require(<function> <usage> <name> <unparsed> <missing> <keyword>...)
 #
 # Checks the arguments of a public function, and stops with an error if they are wrong.

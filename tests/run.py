@@ -35,7 +35,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 from epg.generator.bootstrap import package_folder
-from tests.tiers import TESTS, all_groups, read_costs, table
+from tests.tiers import all_groups, read_costs, table, text_of
 
 ROOT = Path(__file__).resolve().parent.parent
 LABELS = {"check": "^check$", "check_all": "^check(_all)?$", "check_long": "^check_long$"}
@@ -49,7 +49,7 @@ SILENCE = 20.0
 
 @dataclass(frozen=True)
 class Outcome:
-    """One test as tests/conftest.py logged it."""
+    """One test as conftest.py logged it."""
 
     test: str
     seconds: float
@@ -123,13 +123,13 @@ def main(arguments: list[str]) -> int:
             print(line, end="", flush=True)
     outcomes = read_log(log)
     print(report(outcomes))
-    committed = read_costs((TESTS / "costs.txt").read_text(encoding="utf-8"))
+    committed = read_costs(text_of("costs.txt"))
     for line in wrong_costs(costs(outcomes), committed):
         print(line)
     if options.write_costs:
         options.write_costs.write_text(costs_text(costs(outcomes), committed), encoding="utf-8")
     expected = os.environ.get("EPG_EXPECTED_SKIPS")
-    unexpected = unexpected_skips(outcomes, Path(expected).read_text(encoding="utf-8")) if expected else []
+    unexpected = unexpected_skips(outcomes, text_of(os.path.abspath(expected))) if expected else []
     for line in unexpected:
         print(f"unexpected skip: {line}")
     failed = failures(outcomes, progress.failed, options.build)
@@ -223,10 +223,17 @@ def costs(outcomes: list[Outcome]) -> dict[tuple[str, str], float]:
 
 
 def costs_text(measured: Mapping[tuple[str, str], float], committed: Mapping[tuple[str, str], float]) -> str:
-    """Text of tests/costs.txt: files that take a second or more, and the tiers that did not run as committed."""
+    """Text of tests/costs.txt: files that take a second or more, and the tiers that did not run as committed.
+
+    A folder in ``integration`` has its own file, which is edited by hand.
+    """
     ran = {tier for tier, _ in measured}
     seconds = {key: value for key, value in committed.items() if key[0] not in ran} | dict(measured)
-    rows = [f"{tier:10s} {round(value):4d} {file}\n" for (tier, file), value in sorted(seconds.items()) if value >= 1]
+    rows = [
+        f"{tier:10s} {round(value):4d} {file}\n"
+        for (tier, file), value in sorted(seconds.items())
+        if value >= 1 and file.startswith("tests/")
+    ]
     header = "# Measured CPU seconds per file: python tests/run.py check_all --write-costs tests/costs.txt\n"
     return header + "".join(rows)
 

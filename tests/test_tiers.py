@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.conftest import PRIORITY
+from conftest import PRIORITY
 from tests.run import (
     BEGINNING,
     Outcome,
@@ -36,17 +36,19 @@ from tests.tiers import (
     TIERS,
     Group,
     all_groups,
+    files_with_tests,
     groups,
     read_costs,
     read_table,
     table,
+    text_of,
     unused,
 )
 
 ROOT = TESTS.parent
 VERB = re.compile(" (?:is not|are not|does not|cannot|names no) ")
 SOURCES = (".py", ".yaml", ".toml", ".json")
-FILES = sorted(f"tests/{path.relative_to(TESTS).as_posix()}" for path in TESTS.rglob("test_*.py"))
+FILES = files_with_tests()
 
 
 def test_the_longest_beginning_decides() -> None:
@@ -67,7 +69,7 @@ def test_an_unknown_tier_is_refused() -> None:
 
 
 def test_every_line_of_the_table_names_something_that_exists() -> None:
-    """tests/conftest.py also looks for the parameters, in the files that it collects."""
+    """conftest.py also looks for the parameters, in the files that it collects."""
     for path in [*table().tiers, *table().real_time, *table().alone]:
         file, _, function = path.partition("[")[0].partition("::")
         assert (ROOT / file).exists(), path
@@ -86,15 +88,15 @@ def test_a_parameter_selects_all_tests_that_have_it() -> None:
 
 
 def test_every_cost_is_of_a_file_in_its_tier() -> None:
-    for tier, file in read_costs((TESTS / "costs.txt").read_text(encoding="utf-8")):
+    for tier, file in read_costs(text_of("costs.txt")):
         assert file in FILES, file
         assert tier in table().tiers_in(file), (tier, file)
 
 
 def test_every_expected_skip_names_a_test_or_a_reason_that_exists() -> None:
-    sources = [path for folder in ("tests", "epg", "targets") for path in (ROOT / folder).rglob("*")]
+    sources = [path for folder in ("tests", "epg", "targets", "integration") for path in (ROOT / folder).rglob("*")]
     text = "\n".join(path.read_text(encoding="utf-8") for path in sources if path.suffix in SOURCES)
-    for line in (TESTS / "expected_skips.txt").read_text(encoding="utf-8").splitlines():
+    for line in text_of("expected_skips.txt").splitlines():
         if line.startswith(BEGINNING):
             name = VERB.split(line.removeprefix(BEGINNING).removeprefix("EPG: "))[0].removesuffix("-gcc")
             assert name in text, line
@@ -141,7 +143,7 @@ def test_a_file_in_real_time_and_a_file_alone_have_tests_of_their_own() -> None:
 
 def test_programs_that_run_in_real_time_have_a_better_priority_if_the_user_may_give_it() -> None:
     code = (
-        "import os, sys, tests.conftest as it\n"
+        "import os, sys, conftest as it\n"
         "it.prefer(set(sys.argv[1:]), it.Table({}, frozenset({'a', 'b'})))\n"
         "print(os.getpriority(os.PRIO_PROCESS, 0))"
     )
@@ -197,7 +199,7 @@ def test_costs_are_cpu_seconds_and_an_entry_that_is_far_off_is_told() -> None:
 
 def test_the_costs_of_check_and_check_all_stay_below_their_limits() -> None:
     spent = dict.fromkeys(TIERS, 0.0)
-    for (tier, _), seconds in read_costs((TESTS / "costs.txt").read_text(encoding="utf-8")).items():
+    for (tier, _), seconds in read_costs(text_of("costs.txt")).items():
         spent[tier] += seconds
     assert spent["check"] <= CHECK_CPU
     assert spent["check"] + spent["check_all"] <= CHECK_ALL_CPU
@@ -252,7 +254,7 @@ def test_a_test_runs_alone_by_the_command_that_is_printed() -> None:
 
 
 def test_the_environment_of_the_caller_does_not_reach_the_programs_that_tests_start() -> None:
-    code = "import os, tests.conftest; print(sorted(os.environ))"
+    code = "import os, conftest; print(sorted(os.environ))"
     others = ["MAKE_TERMOUT", "MAKEFLAGS", "CLICOLOR_FORCE", "CFLAGS", "CMAKE_GENERATOR", "PYTHONHASHSEED"]
     caller = {**os.environ, **dict.fromkeys(others, "1"), "EPG_PATH": "1"}
     caller["PYTHONPATH"] = os.pathsep.join([str(ROOT), *sys.path[1:]])

@@ -2,7 +2,7 @@
 """The tier of each test, and the groups of test files that ctest runs as one test.
 
 ``tests/tiers.txt`` names the tests of ``check_all`` and ``check_long``; all others belong to ``check``.
-``tests/costs.txt`` lists the CPU time that each file takes.
+``tests/costs.txt`` lists the CPU time that each file takes.  A folder in ``integration`` has these files for its tests.
 
 >>> table = read_table("check_all  tests/ros2\\ncheck_long tests/ros2/test_a.py::test_hours\\n")
 >>> table.tier("tests/ros2/test_a.py::test_minutes[3]"), table.tier("tests/ros2/test_a.py::test_hours[3]")
@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 TESTS = Path(__file__).resolve().parent
+ROOT = TESTS.parent
 TIERS = ("check", "check_all", "check_long")
 ALONE = 15.0
 """Limit in CPU seconds: ctest runs a costlier file as a test by itself.  A start of pytest takes one second."""
@@ -121,9 +122,21 @@ def _expanded(names: str) -> list[str]:
     return [name for choice in choices.split(",") for name in _expanded(begin + choice + end)]
 
 
+def text_of(name: str) -> str:
+    """The text of ``tests/<name>``, or of the file ``name``, and of the files of this name in ``integration``."""
+    files = (TESTS / name, *sorted(ROOT.glob(f"integration/*/tests/{Path(name).name}")))
+    return "\n".join(file.read_text(encoding="utf-8") for file in files)
+
+
+def files_with_tests() -> list[str]:
+    """The files with tests, relative to the project."""
+    found = (*TESTS.rglob("test_*.py"), *ROOT.glob("integration/*/tests/**/test_*.py"))
+    return sorted(path.relative_to(ROOT).as_posix() for path in found)
+
+
 def table() -> Table:
     """The table in tests/tiers.txt."""
-    return read_table((TESTS / "tiers.txt").read_text(encoding="utf-8"))
+    return read_table(text_of("tiers.txt"))
 
 
 def read_costs(text: str) -> dict[tuple[str, str], float]:
@@ -167,8 +180,7 @@ def _parts(
 
 def all_groups() -> list[Group]:
     """The groups of all test files, as tests/costs.txt says."""
-    files = [f"tests/{path.relative_to(TESTS).as_posix()}" for path in TESTS.rglob("test_*.py")]
-    return groups(files, table(), read_costs((TESTS / "costs.txt").read_text(encoding="utf-8")))
+    return groups(files_with_tests(), table(), read_costs(text_of("costs.txt")))
 
 
 def main() -> int:

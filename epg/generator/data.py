@@ -21,11 +21,21 @@ def data_folder(name: str) -> Path:
     raise FileNotFoundError(f"EPG's folder '{name}' is missing beside {package}")
 
 
+@cache
+def own_roots() -> tuple[Path, ...]:
+    """The folders of targets that come with EPG: those in ``integration``, which nothing else names, and ``targets``.
+
+    ``cmake/EPGPython.cmake`` has the same list.
+    """
+    targets = data_folder("targets")
+    return (*sorted(targets.parent.glob("integration/*/targets")), targets)
+
+
 def is_own_target_file(file: str) -> bool:
-    """True for a file in EPG's own folder of targets: a project that must differ from it has a file that extends it."""
-    return data_folder("targets") in Path(file).absolute().parents
+    """True for a file in EPG's own folders of targets: a project that must differ from it has one that extends it."""
+    return not set(own_roots()).isdisjoint(Path(file).absolute().parents)
 
 
 def targets_roots(user_folders: Iterable[str | Path] = ()) -> tuple[Path, ...]:
-    """The folders of targets in the order in which EPG searches them: the user's folders, then EPG's own folder."""
-    return (*(Path(folder) for folder in user_folders if str(folder)), data_folder("targets"))
+    """The folders of targets in the order in which EPG searches them: the user's folders, then EPG's own folders."""
+    return (*(Path(folder) for folder in user_folders if str(folder)), *own_roots())

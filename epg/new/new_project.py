@@ -296,7 +296,7 @@ def _plan(name: str, base: _Base, model: Model, place: str, request: ProjectRequ
         middleware=base.middleware,
         transport=transports[0] if transports else "null",
         console=base.has_console(catalog),
-        node=base.used is not None and base.used.is_node,
+        agent="" if base.used is None else base.used.agent,
         model=place,
         model_name=model.name,
         stand_ins=(),

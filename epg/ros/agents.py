@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Plans the micro-ROS agents for a set of targets: one for each board, and one for all targets that use UDP.
+"""Plans the agents for a set of targets: one for each board, and one for all targets that use UDP.
 
 A board on USB is identified by its serial number, because ``/dev/ttyACM0`` is the board that was plugged in first::
 
@@ -16,14 +16,13 @@ from dataclasses import field
 from epg.generator.dataclass import dataclass
 from epg.generator.diagnostics import Diagnostics, did_you_mean
 from epg.generator.source import Span
-from epg.runs.robot import HOST_SERIAL, PICO_DIGITS, Robot
+from epg.runs.robot import HOST_SERIAL, Robot, UsbDevice, report_damaged
 
-AGENT_MIDDLEWARES = ("xrce", "micro_ros")
 DEFAULT_BAUD_RATE = 115200
 """The default baud rate of a tty.  A board on USB accepts any rate."""
 
 _BY_ID = "/dev/serial/by-id/usb-{name}_{serial}-if00"
-"""The name that udev gives to the first port of a Pico.
+"""The name that udev gives to the first port of a board.
 
 It has the manufacturer, the product and the serial number of the USB descriptors, and the number of the interface, 0.
 """
@@ -31,13 +30,14 @@ It has the manufacturer, the product and the serial number of the USB descriptor
 
 @dataclass(frozen=True)
 class Agent:
-    """One process of the agent.
+    """One process of an agent.
 
-    ``device`` is the tty that it opens, or None for UDP.  ``serial`` is the serial number of a board on USB, else None.
-    ``serves`` are the targets that it connects.
+    ``program`` is the ROS 2 package of the agent, and its program.  ``device`` is the tty that it opens, or None for
+    UDP.  ``serial`` is the serial number of a board on USB, else None.  ``serves`` are the targets that it connects.
     """
 
     name: str
+    program: str
     arguments: tuple[str, ...]
     device: str | None
     serial: str | None
@@ -74,24 +74,25 @@ def plan_agents(robots: Sequence[Robot], setup: AgentSetup, diagnostics: Diagnos
     """The agents that ``robots`` need, in the order of the robots.  The agent for UDP is the last one."""
     _refuse_equal_names(robots, diagnostics)
     agents: list[Agent] = []
-    by_udp: list[Robot] = []
+    by_udp: dict[str, list[Robot]] = {}
     for robot in robots:
-        if robot.middleware not in AGENT_MIDDLEWARES:
+        if robot.agent is None:
+            problem = "'communication.agent' is missing, as in files of an older EPG"
+            report_damaged(Span(str(robot.file)), problem, diagnostics)
+        elif not robot.agent:
             if robot.name not in setup.programs:
                 _warn_of_no_agent(robot, diagnostics)
         elif robot.name in setup.devices:
-            agents += [_on_device(robot, device, diagnostics) for device in setup.devices[robot.name]]
-        elif robot.transport == "usb":
-            agents += _on_usb(robot, setup.boards.get(robot.name, ()), diagnostics)
+            agents += [_on_device(robot, robot.agent, device, diagnostics) for device in setup.devices[robot.name]]
+        elif robot.transport == "usb" and robot.usb is not None:
+            agents += _on_usb(robot, robot.agent, robot.usb, setup.boards.get(robot.name, ()), diagnostics)
         elif robot.transport == "udp":
-            by_udp.append(robot)
+            by_udp.setdefault(robot.agent, []).append(robot)
         else:
-            message = f"'{robot.name}' uses the transport '{robot.transport}': the tty of this computer is not known"
-            hint = f"name it, for example --device {robot.name}=/dev/ttyAMA0:921600"
-            diagnostics.error("device-missing", Span(str(robot.file)), message, hint=hint)
-    if by_udp:
-        port = str(setup.port)
-        agents.append(Agent(f"agent_udp_{port}", ("udp4", "-p", port), None, None, tuple(by_udp)))
+            _report_no_device(robot, diagnostics)
+    port = str(setup.port)
+    for program, served in by_udp.items():
+        agents.append(Agent(f"agent_udp_{port}", program, ("udp4", "-p", port), None, None, tuple(served)))
     _refuse_one_device_twice(agents, diagnostics)
     _warn_of_equal_nodes(robots, agents, setup, diagnostics)
     if not agents and not setup.programs and not diagnostics.has_errors:
@@ -107,16 +108,24 @@ def _refuse_equal_names(robots: Sequence[Robot], diagnostics: Diagnostics) -> No
     diagnostics.stop_if_errors()
 
 
+def _report_no_device(robot: Robot, diagnostics: Diagnostics) -> None:
+    message = f"'{robot.name}' uses the transport '{robot.transport}': the tty of this computer is not known"
+    hint = f"name it, for example --device {robot.name}=/dev/ttyAMA0:921600"
+    if robot.transport == "usb":
+        hint = f"configure its project again if an older EPG did so; otherwise {hint}"
+    diagnostics.error("device-missing", Span(str(robot.file)), message, hint=hint)
+
+
 def _warn_of_no_agent(robot: Robot, diagnostics: Diagnostics) -> None:
-    dds = robot.middleware == "dds"
-    why = "its middleware 'dds' does not use one" if dds else f"its middleware is '{robot.middleware}'"
     hint = f"add --program {robot.name}=<path>: the launch file then starts its program"
     hint = hint if robot.platform == "host" else ""
-    message = f"'{robot.name}' needs no agent: {why}"
+    message = f"'{robot.name}' needs no agent: its middleware '{robot.middleware}' does not use one"
     diagnostics.warning("no-agent-needed", Span(str(robot.file)), message, hint=hint)
 
 
-def _on_usb(robot: Robot, serials: Sequence[str], diagnostics: Diagnostics) -> list[Agent]:
+def _on_usb(
+    robot: Robot, program: str, usb: UsbDevice, serials: Sequence[str], diagnostics: Diagnostics
+) -> list[Agent]:
     """The agents for the boards with these serial numbers, which all run the target ``robot``."""
     if not serials:
         message = f"'{robot.name}' uses USB: the serial number of its board is not known"
@@ -126,23 +135,23 @@ def _on_usb(robot: Robot, serials: Sequence[str], diagnostics: Diagnostics) -> l
         diagnostics.error("board-missing", Span(str(robot.file)), message, hint=hint)
     agents = []
     for serial in serials:
-        number = serial.upper() if robot.usb_serial is None else serial
+        number = serial.upper() if usb.serial is None else serial
         span = Span.of_argument(f"{robot.name}={serial}", "--board")
-        if robot.usb_serial is None and not re.fullmatch(f"[0-9A-F]{{{robot.serial_digits}}}", number):
-            board = "a Pico" if robot.serial_digits == PICO_DIGITS else f"a board {robot.board}"
-            message = f"'{serial}' is not the serial number of {board}"
-            hint = f"the serial number of {board} has {robot.serial_digits} hexadecimal digits"
+        if usb.serial is None and not re.fullmatch(f"[0-9A-F]{{{usb.serial_digits}}}", number):
+            message = f"'{serial}' is not the serial number of a board {robot.board}"
+            hint = f"the serial number of a board {robot.board} has {usb.serial_digits} hexadecimal digits"
             diagnostics.error("wrong-serial-number", span, message, hint=hint)
             continue
-        if robot.usb_serial not in (None, serial):
+        if usb.serial not in (None, serial):
             message = f"'{serial}' is not the serial number of '{robot.name}'"
-            hint = f"'communication.usb' of its .tcf gives it the number '{robot.usb_serial}'"
+            hint = f"'communication.usb' of its .tcf gives it the number '{usb.serial}'"
             diagnostics.error("wrong-serial-number", span, message, hint=hint)
             continue
-        device = _BY_ID.format(name=robot.usb_name, serial=number)
+        device = _BY_ID.format(name=usb.name, serial=number)
         agents.append(
             Agent(
                 f"agent_{robot.name}_{number}",
+                program,
                 _serial_arguments(device, DEFAULT_BAUD_RATE),
                 device,
                 number,
@@ -152,7 +161,7 @@ def _on_usb(robot: Robot, serials: Sequence[str], diagnostics: Diagnostics) -> l
     return agents
 
 
-def _on_device(robot: Robot, text: str, diagnostics: Diagnostics) -> Agent:
+def _on_device(robot: Robot, program: str, text: str, diagnostics: Diagnostics) -> Agent:
     """The agent for a tty.  ``text`` is for example "/dev/ttyAMA0" or "/dev/ttyAMA0:921600"."""
     device, _, rate = text.partition(":")
     if not device.startswith("/dev/") or not device.isprintable() or not re.fullmatch("([1-9][0-9]{2,6})?", rate):
@@ -161,7 +170,7 @@ def _on_device(robot: Robot, text: str, diagnostics: Diagnostics) -> Agent:
         diagnostics.error("wrong-device", span, f"'{text}' is not a tty, with or without a baud rate", hint=hint)
     stem = re.sub("[^0-9A-Za-z]+", "_", device.removeprefix("/dev/"))
     arguments = _serial_arguments(device, int(rate or DEFAULT_BAUD_RATE))
-    return Agent(f"agent_{robot.name}_{stem}", arguments, device, None, (robot,))
+    return Agent(f"agent_{robot.name}_{stem}", program, arguments, device, None, (robot,))
 
 
 def _serial_arguments(device: str, rate: int) -> tuple[str, ...]:
@@ -171,8 +180,7 @@ def _serial_arguments(device: str, rate: int) -> tuple[str, ...]:
 def _refuse_one_device_twice(agents: Sequence[Agent], diagnostics: Diagnostics) -> None:
     users: dict[str, list[Agent]] = {}
     for agent in agents:
-        if agent.device is not None:
-            users.setdefault(agent.device, []).append(agent)
+        users.setdefault(agent.device or f"UDP port {agent.arguments[-1]}", []).append(agent)
     for device, several in users.items():
         if len(several) > 1:
             names = ", ".join(f"'{robot.name}'" for agent in several for robot in agent.serves)

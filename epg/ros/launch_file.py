@@ -50,8 +50,8 @@ _AGENTS = """\
 _NODE = """\
             {comment}
             Node(
-                package="micro_ros_agent",
-                executable="micro_ros_agent",
+                package={program},
+                executable={program},
                 name={name},
                 arguments=[{arguments}, verbosity],
                 output="screen",
@@ -87,7 +87,8 @@ def launch_file(agents: Sequence[Agent], programs: Sequence[Program] = (), file:
     parts.append(_AGENTS if agents else "")
     for agent in agents:
         words = ", ".join(_quoted(argument) for argument in agent.arguments)
-        parts.append(_NODE.format(comment=_comment(describe(agent)), name=_quoted(agent.name), arguments=words))
+        program, name = _quoted(agent.program), _quoted(agent.name)
+        parts.append(_NODE.format(comment=_comment(describe(agent)), program=program, name=name, arguments=words))
     parts += [_program(program, argument) for program, argument in zip(programs, arguments, strict=True)]
     return "".join([*parts, _TAIL])
 
@@ -95,7 +96,7 @@ def launch_file(agents: Sequence[Agent], programs: Sequence[Program] = (), file:
 def _head(
     robots: Sequence[Robot], agents: Sequence[Agent], programs: Sequence[Program], arguments: Sequence[str], file: str
 ) -> str:
-    what = [text for text, items in (("micro-ROS agents", agents), ("host programs", programs)) if items]
+    what = [text for text, items in (("agents", agents), ("host programs", programs)) if items]
     actions = ["DeclareLaunchArgument", *(["SetEnvironmentVariable"] if agents else [])]
     substitutions = [*(["EnvironmentVariable"] if agents else []), "LaunchConfiguration"]
     if any(not program.path.startswith("/") for program in programs):

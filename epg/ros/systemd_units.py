@@ -22,16 +22,17 @@ RULES = "70-epg-boards.rules"
 class Installation:
     """The computer that runs the units: its user, ROS 2 distribution, workspace of the agent, and ROS domain."""
 
-    user: str = "ubuntu"
-    distribution: str = "jazzy"
-    workspace: str = "/home/ubuntu/microros_ws"
-    domain: int = 0
+    user: str
+    distribution: str
+    workspace: str
+    domain: int
 
 
 def unit_files(agents: Sequence[Agent], installation: Installation) -> dict[str, str]:
     """All files to install, by name: units, rules for udev if boards are on USB, and a README with instructions."""
     files = {unit_name(agent): unit(agent, installation) for agent in agents}
-    boards = [(agent.serves[0].usb_vendor, agent.serial) for agent in agents if agent.serial is not None]
+    devices = ((agent.serves[0].usb, agent.serial) for agent in agents)
+    boards = [(usb.vendor, serial) for usb, serial in devices if usb is not None and serial is not None]
     if boards:
         files[RULES] = udev_rules(boards)
     files["README.md"] = _readme(agents, installation, bool(boards))
@@ -47,7 +48,7 @@ def unit(agent: Agent, installation: Installation) -> str:
     """The text of the unit of one agent."""
     setup = [f"/opt/ros/{installation.distribution}/setup.bash", f"{installation.workspace}/install/local_setup.bash"]
     steps = [f". {shlex.quote(file)}" for file in setup]
-    steps.append("exec " + shlex.join(["ros2", "run", "micro_ros_agent", "micro_ros_agent", *agent.arguments]))
+    steps.append("exec " + shlex.join(["ros2", "run", agent.program, agent.program, *agent.arguments]))
     after, bound, wanted = "network.target", "", "multi-user.target"
     if agent.device is not None:
         wanted = device_unit(agent.device)
@@ -56,7 +57,7 @@ def unit(agent: Agent, installation: Installation) -> str:
     comments = "".join(f"# {line}\n" for line in describe(agent))
     return f"""\
 {comments}[Unit]
-Description=micro-ROS agent of {", ".join(robot.name for robot in agent.serves)}
+Description={agent.program} of {", ".join(robot.name for robot in agent.serves)}
 {bound}After={after}
 StartLimitIntervalSec=0
 

@@ -15,7 +15,7 @@ import shlex
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from epg.generator.check.names import identifier_problem, namespace_problem, node_name_problem, topic_problem
 from epg.generator.correction import short
@@ -27,15 +27,6 @@ SERIAL = "$serial"
 
 HOST_SERIAL = "host"
 """The word that replaces ``$serial`` in the names of a host program without ``--serial``."""
-
-RASPBERRY_PI = 0x2E8A
-"""The USB vendor number of a Pico whose ``.tcf`` does not set ``communication.usb``."""
-
-PICO_DIGITS = 16
-"""The hexadecimal digits of the serial number of a Pico."""
-
-USB_NAMES = {"manufacturer": "Raspberry Pi", "product": "Pico"}
-"""The texts of a Pico on USB without ``communication.usb``: targets/families/rp2/usb/include/tusb_config.h."""
 
 _SIGNS = frozenset(("communication", "subscriptions", "publications"))
 """Keys of a description; a JSON file that has none of them is something else."""
@@ -70,6 +61,21 @@ class RobotTopic:
 
 
 @dataclass(frozen=True)
+class UsbDevice:
+    """The USB device of a target.
+
+    ``name`` is its manufacturer and its product in the names of udev, such as ``Raspberry_Pi_Pico``.  ``vendor`` is its
+    vendor number: four hexadecimal digits in lower case, as in sysfs.  ``serial`` is the serial number that its
+    ``.tcf`` gives to it, None if it has the number of the board, which has ``serial_digits`` hexadecimal digits.
+    """
+
+    name: str
+    vendor: str
+    serial: str | None
+    serial_digits: int
+
+
+@dataclass(frozen=True)
 class Robot:
     """One target.  ``node`` and ``namespace`` can contain ``$serial``.  ``domain`` is None for the default domain."""
 
@@ -84,15 +90,11 @@ class Robot:
     period: float
     """The time between two publications, in s."""
     middleware: str
+    agent: str | None
+    """The ROS 2 package and program of its agent, "" if it needs none.  None if an older EPG wrote the description."""
     transport: str | None
-    usb_name: str
-    """The manufacturer and the product of its USB device in the names of udev, such as ``Raspberry_Pi_Pico``."""
-    usb_vendor: str
-    """The vendor number of its USB device: four hexadecimal digits in lower case, as in sysfs."""
-    usb_serial: str | None
-    """The serial number that its ``.tcf`` gives to its USB device.  None if the device has the number of the board."""
-    serial_digits: int
-    """The hexadecimal digits of the number of the board."""
+    usb: UsbDevice | None
+    """None if its description does not have all names and numbers, as those of older EPGs and of boards with Zephyr."""
     subscriptions: tuple[RobotTopic, ...]
     publications: tuple[RobotTopic, ...]
     messages: Mapping[str, str]
@@ -200,8 +202,8 @@ def robot_of(file: Path, data: dict[str, Any]) -> Robot:
     """The target in a description.  Raises DamagedDescription if a value of it is missing or wrong."""
     root = _Part(data, "")
     communication = root["communication"]
-    usb = communication.get("usb") or _Part({}, "communication.usb")
-    serial, transport, control = usb.get("serial"), communication.get("transport"), root.get("control")
+    agent, usb = communication.get("agent"), communication.get("usb")
+    transport, control = communication.get("transport"), root.get("control")
     start = control.get("enable_at_start") if control else None
     return Robot(
         file=file,
@@ -210,20 +212,29 @@ def robot_of(file: Path, data: dict[str, Any]) -> Robot:
         platform=root["target"]["platform"].name(_word_problem),
         node=root["node"].name(node_name_problem),
         namespace=root["namespace"].name(namespace_problem),
-        domain=communication.whole_of("domain", 232, None),
+        domain=communication.whole_of("domain", 232),
         enable_at_start=start is not None and start.value is True,
         period=communication["period"].number(least=1e-6),
         middleware=communication["middleware"].name(_word_problem),
+        agent=agent.name(_word_problem) if agent else None,
         transport=transport.name(_word_problem) if transport else None,
-        usb_name="_".join(udev_name(usb.text_of(key, text)) for key, text in USB_NAMES.items()),
-        usb_vendor=f"{usb.whole_of('vendor_id', 0xFFFF, RASPBERRY_PI):04x}",
-        usb_serial=udev_name(serial.text()) if serial else None,
-        serial_digits=usb.whole_of("serial_digits", 64, PICO_DIGITS),
+        usb=_usb_device(usb) if usb else None,
         subscriptions=tuple(_topic(topic) for topic in root["subscriptions"].elements()),
         publications=tuple(_topic(topic) for topic in root["publications"].elements()),
         messages={name: text.text() for name, text in root.entries("messages").items()},
         wires=dict(_wire(wire) for key in ("inputs", "outputs") for wire in root.elements_of(key)),
     )
+
+
+def _usb_device(data: _Part) -> UsbDevice | None:
+    """The USB device, or None if a name or number is missing that its manufacturer or its port layer gives to it."""
+    names = [data.text_of(key, "") for key in ("manufacturer", "product")]
+    vendor, digits = data.whole_of("vendor_id", 0xFFFF), data.whole_of("serial_digits", 64)
+    serial = data.get("serial")
+    if "" in names or vendor is None or digits is None:
+        return None
+    name = "_".join(udev_name(text) for text in names)
+    return UsbDevice(name, f"{vendor:04x}", udev_name(serial.text()) if serial else None, digits)
 
 
 def udev_name(text: str) -> str:
@@ -271,9 +282,6 @@ class DamagedDescription(ValueError):
 
     The message names the value by its place in the file, such as 'communication.period'.
     """
-
-
-Missing = TypeVar("Missing", int, None)
 
 
 @dataclass(frozen=True)
@@ -345,10 +353,10 @@ class _Part:
             raise DamagedDescription(f"{self._named()} is not a whole number from 0 to {most}")
         return int(self.value)
 
-    def whole_of(self, key: str, most: int, otherwise: Missing) -> int | Missing:
-        """The whole number ``key``, which can be missing."""
+    def whole_of(self, key: str, most: int) -> int | None:
+        """The whole number ``key``; None if it is missing."""
         part = self.get(key)
-        return part.whole(most) if part else otherwise
+        return part.whole(most) if part else None
 
     def _named(self) -> str:
         return f"'{self.place}'" if self.place else "the file"

@@ -10,6 +10,7 @@ from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
+from epg.generator.check.middleware import offered
 from epg.generator.dataclass import dataclass
 from epg.generator.diagnostics import Diagnostics, Note, did_you_mean
 from epg.generator.emit.macros import Macros
@@ -158,8 +159,12 @@ class _Checker:
             application = self.targets[end.target].application
             middleware = application.communication.middleware
             if not middleware.is_node:
+                possible = map(
+                    self.loader.catalog.find_middleware, sorted(offered(application.target, self.loader.catalog))
+                )
+                nodes = [each.name for each in possible if each is not None and each.is_node]
                 message = f"'{end.target}' has no topics: its middleware is '{middleware.name}'"
-                hint = "set 'communication.middleware' to xrce, dds or micro_ros, if its target has one of them"
+                hint = f"set 'communication.middleware' to {' or '.join(nodes)}" if nodes else ""
                 notes = [Note("the middleware", application.communication.span)]
                 self.diagnostics.error("not-a-node", end.span, message, hint=hint, notes=notes)
                 return False

@@ -136,9 +136,10 @@ def flash_problem(application: Application, flashing: Flashing, robot: Robot | N
     if any("{name}" in part for part in flashing.write) and flashing.tool not in target.board.sdks:
         hint = f"write 'sdks: {{{flashing.tool}: <its name there>}}' in its board.yaml"
         return f"the name of the board '{target.board.name}' in {flashing.tool} is not known", hint
-    if robot is not None and flashing.named_by == "serial" and robot.usb_serial is not None:
+    serial = robot.usb.serial if robot is not None and robot.usb is not None else None
+    if serial is not None and flashing.named_by == "serial":
         hint = "remove 'communication.usb.serial', or write the image by hand"
-        return f"its board has the serial number '{robot.usb_serial}' only while it runs the program", hint
+        return f"its board has the serial number '{serial}' only while it runs the program", hint
     return "", ""
 
 

@@ -41,7 +41,12 @@ def test_everything_is_right() -> None:
     catalog, problems = builtin()
     read_everything(catalog)
     assert [(p.span, p.message) for p in problems] == []
-    folders = {path.parent.name for folder in FOLDERS.values() for path in TARGETS.glob(f"{folder}/*/*")}
+    folders = {
+        path.parent.name
+        for folder in FOLDERS.values()
+        for root in targets_roots()
+        for path in root.glob(f"{folder}/*/*")
+    }
     shared = {"common"}  # shared by kinds
     assert {name for category in FOLDERS for name in catalog.names(category)} == folders - shared
 

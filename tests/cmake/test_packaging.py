@@ -19,12 +19,23 @@ TREES = (
     "cmake",
     "targets",
     "schemas",
-    "integration",
+    "integration/20-sim",
+    *(folder.relative_to(ROOT).as_posix() for folder in ROOT.glob("integration/*/targets")),
     "zephyr",
     "zephyr_module",
     "examples/jiwy",
     "examples/relbot/plant",
 )
+
+NAMES = """
+import sys
+sys.path.insert(0, sys.argv[1])
+from epg.generator.catalog.catalog import FOLDERS, load_catalog
+from epg.generator.data import own_roots
+from epg.generator.diagnostics import Diagnostics
+catalog = load_catalog(own_roots(), Diagnostics())
+print(*(name for category in FOLDERS for name in catalog.names(category)))
+"""
 
 
 def test_the_wheel_holds_the_same_files_as_the_checkout(wheel: Path) -> None:
@@ -46,6 +57,19 @@ def test_the_wheel_holds_the_same_files_as_the_checkout(wheel: Path) -> None:
     assert {name for name in names if name.startswith(editor)} == {f"{editor}{name}.schema.json" for name in USER_FILES}
     assert {"epg/__main__.py", "epg/generator/emit/templates/app.c.j2", "epg/generator/lock/generator.txt"} <= names
     assert any(name.endswith(".data/data/share/EPG/cmake/EPGConfig.cmake") for name in names)
+
+
+def test_a_wheel_has_the_same_catalog_as_the_checkout(prefix: Path, tmp_path: Path) -> None:
+    """Also the items in the folders of targets in ``integration``."""
+    (site,) = prefix.glob("lib/*/site-packages")
+    found = [
+        subprocess.run(
+            [sys.executable, "-c", NAMES, str(folder)], cwd=tmp_path, capture_output=True, text=True, check=True
+        )
+        for folder in (site, ROOT)
+    ]
+    assert found[0].stdout == found[1].stdout
+    assert {path.parent.name for path in ROOT.glob("integration/*/targets/*/*/*.yaml")} <= set(found[0].stdout.split())
 
 
 def test_a_wheel_and_a_source_archive_have_the_licence(wheel: Path, tmp_path: Path) -> None:

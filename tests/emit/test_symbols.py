@@ -15,7 +15,7 @@ from epg.cli.main import main
 COMMON = Path(__file__).resolve().parents[1] / "errors" / "common"
 FILES = ["--tcf", "robot.tcf", "--model", "model", "--bindings", "bindings.yaml", "--output", "out"]
 GUARD = "  {}: {{kind: motion_guard, actuator: motor, encoder: encoder, homing: {{travel: 200 deg, time: 10 s}}}}\n"
-COMMUNICATION = "communication: {middleware: micro_ros, console: true}\n"
+COMMUNICATION = "communication: {middleware: xrce, console: true}\n"
 
 
 def generate(folder: Path, target: str, components: list[str], common: Path = COMMON) -> str:

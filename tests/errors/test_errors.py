@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every message of EPG, to the letter.
 
-A file ``cases/<name>.case`` has the wrong files and EPG's messages about them::
+A file ``cases/<name>.case``, here or of the tests in ``integration``, has the wrong files and EPG's messages about
+them::
 
     $ epg check --tcf robot.tcf --model model --bindings bindings.yaml
     --- robot.tcf
@@ -60,7 +61,7 @@ from epg.system.check_system import check_system
 from epg.system.load_system import load_system
 
 HERE = Path(__file__).resolve().parent
-CASES = sorted((HERE / "cases").glob("*.case"))
+CASES = sorted([*(HERE / "cases").glob("*.case"), *HERE.parents[1].glob("integration/*/tests/cases/*.case")])
 COMMAND = "epg check --tcf robot.tcf --model model --bindings bindings.yaml"
 
 

@@ -24,7 +24,8 @@ from .draw import SUFFIXES, compiles, mutants
 from .record import NONE, Mutant
 from .trial import Copy
 
-NOT_DRAWN = ("tests/", "docs/")
+NOT_DRAWN = {"tests", "docs"}
+"""Folders."""
 
 
 def main(arguments: list[str]) -> int:
@@ -96,7 +97,7 @@ def _moved(mutant: Mutant) -> Mutant | None:
 
 def sources() -> list[str]:
     """The files from which mutants are drawn."""
-    return [file for file in files() if Path(file).suffix in SUFFIXES and not file.startswith(NOT_DRAWN)]
+    return [file for file in files() if Path(file).suffix in SUFFIXES and NOT_DRAWN.isdisjoint(file.split("/"))]
 
 
 def draw(known: Iterable[Mutant], rooms: Mapping[str, Sequence[str]], each: int, seed: int) -> list[Mutant]:

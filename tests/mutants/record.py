@@ -60,8 +60,9 @@ class Mutant:
 
 def rooms() -> dict[str, list[str]]:
     """The tests of each room, which is a folder and a suffix: ``epg/connect/*.js``."""
-    table = yaml.safe_load((HERE / "rooms.yaml").read_text(encoding="utf-8"))
-    return {room: tests.split() for room, tests in table.items()}
+    tables = [HERE / "rooms.yaml", *sorted(ROOT.glob("integration/*/tests/mutants.yaml"))]
+    found = (yaml.safe_load(table.read_text(encoding="utf-8")) for table in tables)
+    return {room: tests.split() for table in found for room, tests in table.items()}
 
 
 def room_of(file: str, names: Iterable[str]) -> str | None:

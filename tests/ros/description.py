@@ -8,6 +8,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+PICO = {"manufacturer": "Raspberry Pi", "product": "Pico", "serial_digits": 16, "vendor_id": 0x2E8A}
+"""The USB device of a Pico."""
+
 
 def topic(name: str, type: str = "std_msgs/msg/Float64", **more: Any) -> dict[str, Any]:
     return {
@@ -41,9 +44,10 @@ def write_description(
         "namespace": namespace,
         "communication": {
             "middleware": middleware,
+            "agent": "micro_ros_agent" if middleware == "xrce" else "",
             "transport": transport,
             "period": 0.033,
-            **({"usb": usb} if usb else {}),
+            **({"usb": {**PICO, **(usb or {})}} if transport == "usb" else {}),
         },
         "subscriptions": list(subscriptions),
         "publications": list(publications),

@@ -16,9 +16,10 @@ from typing import Any
 import pytest
 
 from epg.cli.main import main
-from epg.generator.data import targets_roots
+from epg.generator.catalog.catalog import load_catalog
+from epg.generator.data import data_folder, targets_roots
+from epg.generator.diagnostics import Diagnostics
 from epg.ros.systemd_units import device_unit
-from epg.runs.robot import USB_NAMES
 from tests.doubles.toolchain import ROOT
 
 from .description import write_description
@@ -82,12 +83,24 @@ def test_one_agent_for_each_board_and_one_for_all_by_udp(robots: Path, capsys: p
 
 
 def test_the_name_of_a_board_is_that_of_its_descriptors() -> None:
-    """udev composes the name from manufacturer, product and serial number."""
-    source = next(
-        file for root in targets_roots([]) if (file := root / "families/rp2/usb/include/tusb_config.h").is_file()
-    ).read_text(encoding="utf-8")
+    """udev composes the name from manufacturer, product and serial number; both port layers have those of the chip."""
+    source = (data_folder("targets") / "families/rp2/usb/include/tusb_config.h").read_text(encoding="utf-8")
     texts = dict(re.findall(r'#define EPG_PICO_USB_(\w+) "([^"]*)"', source))
-    assert {key.upper(): text for key, text in USB_NAMES.items()} == texts
+    numbers = {name: int(text, 16) for name, text in re.findall(r"#define EPG_PICO_USB_(\w+) (0x\w+)", source)}
+    options = (ROOT / "zephyr_module/Kconfig.epg").read_text(encoding="utf-8")
+    of_zephyr = re.findall(r'default "?(.+?)"? if SOC_(?:FAMILY_RPI_PICO|SERIES_RP2040)', options)
+    catalog = load_catalog(targets_roots(), Diagnostics())
+    for board, product_id in (("rpi_pico", 0x000A), ("rpi_pico2", 0x0009)):
+        target = catalog.find_target(f"{board}_zephyr")
+        assert target is not None
+        device = target.soc.usb_device
+        assert (device["manufacturer"], device["product"]) == (texts["MANUFACTURER"], texts["PRODUCT"])
+        assert (device["vendor_id"], numbers["PRODUCT_ID"], device["product_id"]) == (
+            numbers["VENDOR_ID"],
+            9,
+            product_id,
+        )
+        assert {f"0x{device['vendor_id']:04x}", f"0x{product_id:04x}", *texts.values()} <= set(of_zephyr)
     product = f"usb-{texts['MANUFACTURER']}_{texts['PRODUCT']}".replace(" ", "_")
     assert BY_ID.format(FIRST) == f"/dev/serial/by-id/{product}_{FIRST}-if00"
 
@@ -107,6 +120,57 @@ def test_a_nucleo_on_usb(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert '"/dev/serial/by-id/usb-STMicroelectronics_STM32_003A002C3533510B31373835-if00"' in text
     rules = next((tmp_path / "out").glob("**/*.rules")).read_text(encoding="utf-8")
     assert 'ATTRS{idVendor}=="0483"' in rules
+
+
+@pytest.mark.parametrize("target", ["rpi_pico_bare_metal", "rpi_pico2_freertos", "rpi_pico_zephyr"])
+def test_a_generated_pico_on_usb(target: str, tmp_path: Path) -> None:
+    """Its names come from the chip's data, on each platform."""
+    example = ROOT / "examples/jiwy"
+    files = ["--model", str(example / "model"), "--bindings", str(example / "jiwy.bindings.yaml")]
+    generate = ["generate", "jiwy", "--tcf", f"{target}_jiwy.tcf", *files, "--output", str(tmp_path / "epg")]
+    assert main(generate) == 0
+    launch = ["launch", str(tmp_path / "epg/jiwy.json"), "--output", str(tmp_path), "--board", f"jiwy={FIRST}"]
+    assert main([*launch, "--systemd"]) == 0
+    (node,) = nodes((tmp_path / "agents.launch.py").read_text(encoding="utf-8"))
+    assert (node["package"], node["arguments"][4]) == ("micro_ros_agent", BY_ID.format(FIRST))
+    assert 'ATTRS{idVendor}=="2e8a"' in (tmp_path / "systemd/70-epg-boards.rules").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("missing", "message", "hint"),
+    [
+        (
+            "agent",
+            "'communication.agent' is missing, as in files of an older EPG",
+            "configure the project again: CMake",
+        ),
+        (
+            "usb",
+            "the tty of this computer is not known",
+            "configure its project again if an older EPG did so; otherwise",
+        ),
+    ],
+)
+def test_a_description_of_an_older_epg_is_explained(
+    missing: str, message: str, hint: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = write_description(tmp_path / "jiwy.json")
+    data = json.loads(file.read_text(encoding="utf-8"))
+    del data["communication"][missing]
+    file.write_text(json.dumps(data), encoding="utf-8")
+    launch = ["launch", str(file), "--output", str(tmp_path / "out")]
+    assert main([*launch, "--board", f"jiwy={FIRST}"]) == 1
+    said = capsys.readouterr().err
+    assert message in said and f"hint: {hint}" in said
+    assert main([*launch, "--device", "jiwy=/dev/ttyACM0"]) == (1 if missing == "agent" else 0)
+    assert main(["describe", str(file), "--output", str(tmp_path / "plots")]) == 0, "only agents need it"
+
+
+def test_two_agents_on_one_port_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    files = [write_description(tmp_path / f"{name}.json", node=name, transport="udp") for name in ("pan", "tilt")]
+    files[1].write_text(files[1].read_text(encoding="utf-8").replace("micro_ros_agent", "other_agent"))
+    assert main(["launch", *map(str, files), "--output", str(tmp_path / "out")]) == 1
+    assert "UDP port 8888 is used by more than one agent: 'pan', 'tilt'" in capsys.readouterr().err
 
 
 def test_a_board_with_names_of_its_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -292,7 +356,9 @@ HOSTILE = [
 
 
 @pytest.mark.parametrize("text", HOSTILE, ids=repr)
-@pytest.mark.parametrize("key", ["name", "node", "namespace", "topic", "board", "middleware", "transport", "domain"])
+@pytest.mark.parametrize(
+    "key", ["name", "node", "namespace", "topic", "board", "middleware", "agent", "transport", "domain"]
+)
 def test_names_that_epg_would_not_write_are_not_read(
     key: str, text: str, robots: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -300,7 +366,7 @@ def test_names_that_epg_would_not_write_are_not_read(
     file = robots / "relbot.json"
     data = json.loads(file.read_text(encoding="utf-8"))
     place = {"topic": data["publications"][0], "board": data["target"]}.get(key, data)
-    place = data["communication"] if key in ("middleware", "transport", "domain") else place
+    place = data["communication"] if key in ("middleware", "agent", "transport", "domain") else place
     place[key] = text
     file.write_text(json.dumps(data), encoding="utf-8")
     assert main(["launch", "relbot.json", "--board", f"relbot={FIRST}", "--systemd"]) == 1

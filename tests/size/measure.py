@@ -49,7 +49,7 @@ def functions(names: Iterable[str], root: Path = ROOT) -> Iterator[Function]:
     """The functions in the Python, C and JavaScript among the files, without those of the tests."""
     for name in names:
         language = LANGUAGES.get(Path(name).suffix)
-        if language is None or name.startswith("tests/") or "%" in name:  # a template of 20-sim
+        if language is None or "tests" in name.split("/") or "%" in name:  # a template of 20-sim
             continue
         for found in lizard.analyze_file(str(root / name)).function_list:
             lines = found.end_line - found.start_line + 1

@@ -145,8 +145,9 @@ class Soc:
     ``cubemx_name`` is the beginning of its name in STM32CubeMX, or empty; ``cubemx_clocks`` maps clocks to their keys
     there.  ``identity`` is the chip's name in the output of the tool that flashes its family, or empty;
     ``identity_register`` is the register from which that tool reads it, or None.  ``drive`` is the Board-ID of a drive
-    on which its boot program takes UF2 files, or empty.  The port layer takes ``dma_streams``
-    when a target starts: ``dma_users`` maps a class to their number for each claim that carries bytes.
+    on which its boot program takes UF2 files, or empty.  ``usb_device`` holds the names and numbers of its USB device
+    that the C of port layers contains, and the ``serial_digits``.  The port layer takes ``dma_streams`` when a target
+    starts: ``dma_users`` maps a class to their number for each claim that carries bytes.
     """
 
     name: str
@@ -165,6 +166,7 @@ class Soc:
     identity: str
     identity_register: int | None
     drive: str
+    usb_device: Mapping[str, object]
     dma_streams: tuple[str, ...]
     dma_users: Mapping[str, int]
     files: tuple[Path, ...]  # its own, and those of the chips that it extends
@@ -303,6 +305,7 @@ def make_soc(node: YamlNode, folder: Path) -> Soc:
         identity=text_of(node, "identity", "value"),
         identity_register=integer_of(node, "identity", "register"),
         drive=text_of(node, "identity", "drive"),
+        usb_device=MappingProxyType({key: child.value for key, child in map_of(node, "usb_device").items()}),
         dma_streams=texts_of(node, "dma", "streams"),
         dma_users=MappingProxyType({k: int(str(v.value)) for k, v in map_of(node, "dma", "users").items()}),
         files=_files(node, folder / "soc.yaml"),

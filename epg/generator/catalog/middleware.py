@@ -25,7 +25,8 @@ class Middleware:
 
     ``platforms`` maps platforms on which the middleware runs, although their own files do not name it, to transports.
     ``families`` are the only families of chips that it supports there; all if there are none.
-    ``connection`` is "stream" (bytes, carried by a transport of the platform), "own" or "none".  ``uses`` names the
+    ``connection`` is "stream" (bytes, carried by a transport of the platform), "own" or "none".  ``agent`` is
+    the ROS 2 package of the agent that its targets need, with a program of the same name, or "".  ``uses`` names the
     parts that the generator must add to a target: "node", "services", "signals", "parameters", "capture", "jog".
     ``quality`` are the policies that it has in addition to reliability and history: "durability", "deadline",
     "lifespan".
@@ -38,6 +39,7 @@ class Middleware:
     name: str
     summary: str
     connection: str
+    agent: str
     platforms: Mapping[str, tuple[str, ...]]
     families: tuple[str, ...]
     uses: tuple[str, ...]
@@ -76,6 +78,7 @@ def make_middleware(node: YamlNode, folder: Path) -> Middleware:
         name=text_of(node, "middleware"),
         summary=text_of(node, "summary"),
         connection=text_of(node, "connection"),
+        agent=text_of(node, "agent"),
         platforms=MappingProxyType({name: texts_of(node, "platforms", name) for name in map_of(node, "platforms")}),
         families=texts_of(node, "families"),
         uses=texts_of(node, "uses"),

@@ -15,7 +15,7 @@ from epg.generator.catalog.added_class import AddedClass
 from epg.generator.catalog.kind import Kind
 from epg.generator.catalog.middleware import Middleware
 from epg.generator.check.communication import tools_for
-from epg.generator.data import data_folder
+from epg.generator.data import data_folder, own_roots
 from epg.generator.dataclass import dataclass
 from epg.generator.emit.text import cmake
 from epg.generator.models.code import ModelBuild
@@ -32,8 +32,10 @@ class PathNames:
 
     def cmake(self, path: Path) -> str:
         """A CMake argument for ``path``."""
-        for variable, folder in (("EPG_TARGETS_DIR", data_folder("targets")), ("CMAKE_SOURCE_DIR", self.source_dir)):
-            inside = _inside(path, folder)
+        for variable, inside in (
+            ("EPG_TARGETS_DIR", _of_epg(path)),
+            ("CMAKE_SOURCE_DIR", _inside(path, self.source_dir)),
+        ):
             if inside is not None:
                 return f'"${{{variable}}}/{cmake(inside)[1:-1]}"'
         return str(cmake(_absolute(path).as_posix()))
@@ -44,8 +46,7 @@ class PathNames:
 
     def shown(self, path: Path) -> str:
         """The path for the description: relative to EPG's own files or to the project if possible, else unchanged."""
-        for prefix, folder in (("EPG:", data_folder("targets")), ("", self.source_dir)):
-            inside = _inside(path, folder)
+        for prefix, inside in (("EPG:", _of_epg(path)), ("", _inside(path, self.source_dir))):
             if inside is not None:
                 return prefix + inside
         return path.as_posix()
@@ -263,6 +264,13 @@ def _set(variable: str, values: Sequence[str]) -> list[str]:
     if len(values) <= 1:
         return [f"set({variable} {values[0]})" if values else f"set({variable})"]
     return [f"set({variable}", *(f"    {value}" for value in values), ")"]
+
+
+def _of_epg(path: Path) -> str | None:
+    """The way from EPG's folder ``targets`` to a file in one of EPG's own folders of targets; None for other files."""
+    if all(_inside(path, root) is None for root in own_roots()):
+        return None
+    return Path(os.path.relpath(path, data_folder("targets"))).as_posix()
 
 
 def _inside(path: Path, folder: Path | None) -> str | None:

@@ -46,12 +46,13 @@ def describe(emitter: Emitter, names: PathNames, hash: str = "") -> str:
         },
         "communication": {
             "middleware": app.communication.middleware.name,
+            "agent": app.communication.middleware.agent,
             "transport": app.communication.transport,
             "period": float(app.communication.period),
             "domain": app.communication.domain,
             "diagnostics": float(app.communication.diagnostics),
             "console": app.communication.console is not None,
-            **({"usb": _usb(app)} if app.communication.usb else {}),
+            **({"usb": usb} if (usb := _usb(app)) else {}),
         },
         "model": _model(app.model, names),
         "parameters": dict(sorted(app.parameters.items())),
@@ -81,10 +82,15 @@ def _plant(plant: Plant, app: Application, names: PathNames) -> dict[str, Any]:
 
 
 def _usb(app: Application) -> dict[str, Any]:
-    """The names of the USB device, and the digits of its serial number if the family states them."""
-    family = app.target.platform.family
-    digits = {key: value for key, value in (family.usb if family else {}).items() if key == "serial_digits"}
-    return dict(sorted({**digits, **app.communication.usb}.items()))
+    """The names and numbers of the USB device, and the digits of its serial number; empty if it is not used.
+
+    The target configuration states them; the others are those of the family, or of the chip, if a port layer in C has
+    them.
+    """
+    stated, family = app.communication.usb, app.target.platform.family
+    if not stated and app.communication.transport != "usb":
+        return {}
+    return dict(sorted({**app.target.soc.usb_device, **(family.usb if family else {}), **stated}.items()))
 
 
 def _model(model: Model, names: PathNames) -> dict[str, Any]:

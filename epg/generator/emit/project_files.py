@@ -59,8 +59,9 @@ class ProjectPlan:
     ``extends`` is the predefined ``.tcf`` that the project extends.  It is empty if the project starts from
     ``stand_ins`` instead.  ``middleware`` and ``transport`` are empty if the project keeps those of ``extends``.
 
-    ``console`` is True if the user can type commands to the firmware, ``node`` if the firmware is a ROS 2 node, and
-    ``plant`` if the project has a simulated robot.  ``axes`` are the axes that its scenario moves.
+    ``console`` is True if the user can type commands to the firmware, and ``plant`` if the project has a simulated
+    robot.  ``agent`` is the agent that makes the firmware a ROS 2 node, or empty.  ``axes`` are the axes that its
+    scenario moves.
 
     ``actuators`` and ``carriers`` are components of ``extends``: those that move something, and those that carry the
     bytes of a middleware.
@@ -75,7 +76,7 @@ class ProjectPlan:
     middleware: str
     transport: str
     console: bool
-    node: bool
+    agent: str
     model: str
     model_name: str
     stand_ins: Sequence[StandIn]

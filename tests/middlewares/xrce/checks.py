@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of a running board, for the middlewares ``xrce`` and ``micro_ros``."""
+"""Checks of a running board, for all middlewares that use an agent."""
 
 from __future__ import annotations
 

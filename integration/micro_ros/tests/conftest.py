@@ -21,9 +21,7 @@ WARNINGS = "-Wall -Wextra -Wconversion -Wdouble-promotion -Werror"
 
 def configure(folder: Path, *settings: str) -> subprocess.CompletedProcess[str]:
     if not os.environ.get("MICRO_ROS_PATH"):
-        pytest.skip(
-            "MICRO_ROS_PATH does not name a libmicroros for this computer: docs/micro-ros.md says how to build one"
-        )
+        pytest.skip("MICRO_ROS_PATH does not name a libmicroros for this computer: its README says how to build one")
     skip_if_missing(cmake_and_ninja)
     flags = f"-DCMAKE_C_FLAGS={SANITIZERS} {WARNINGS}"
     python = f"-DPython3_EXECUTABLE={sys.executable}"

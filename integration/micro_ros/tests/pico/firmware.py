@@ -21,13 +21,13 @@ def library() -> str:
     """The user's libmicroros for Cortex-M0+; skips the test if it is missing."""
     folder = os.environ.get(VARIABLE)
     if not folder:
-        pytest.skip(f"{VARIABLE} does not name a libmicroros for Cortex-M0+: docs/micro-ros.md says what one has")
+        pytest.skip(f"{VARIABLE} does not name a libmicroros for Cortex-M0+: its README says what one has")
     return folder
 
 
 def firmware(board: str = "pico", executable: str = FIRMWARE) -> Path:
     skip_unless_buildable("freertos")
-    variables = {"PLATFORM": "freertos", "MIDDLEWARE": "micro_ros_console", "MICRO_ROS_PATH": library()}
+    variables = {"PLATFORM": "freertos", "MIDDLEWARE": "micro_ros", "MICRO_ROS_PATH": library()}
     return build(PROJECT, board=board, targets=[executable], variables=variables) / f"{executable}.elf"
 
 

@@ -7,6 +7,7 @@ import random
 
 import pytest
 
+from integration.micro_ros.tests.pico.firmware import MicroRosJiwy, firmware, library
 from tests.doubles.toolchain import binutils
 from tests.platforms.pico.images import skip_unless_emulated
 from tests.platforms.pico.stacks.workload import COMMANDS
@@ -14,8 +15,6 @@ from tests.platforms.pico.test_faults import START, STOP, order
 from tests.platforms.pico.uart.test_node import check_serial_line, node_image
 from tests.platforms.pico.xrce.board import CONSOLE_PORT
 from tests.platforms.pico.xrce.scenarios import SCENARIOS, assert_is_back, hold, restart
-
-from .firmware import MicroRosJiwy, firmware, library
 
 SILENCE = 1000  # milliseconds after which micro_ros gives a silent agent up
 

@@ -9,7 +9,7 @@ import pytest
 
 from tests.middlewares.test_console_c import program
 
-MICRO_ROS = Path(__file__).resolve().parents[3] / "targets" / "middlewares" / "micro_ros"
+MICRO_ROS = Path(__file__).resolve().parents[1] / "targets" / "middlewares" / "micro_ros"
 HERE = Path(__file__).resolve().parent / "c"
 
 

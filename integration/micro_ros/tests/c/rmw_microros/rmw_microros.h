@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The functions of libmicroros for the agent's time, which clock_tests.c defines.

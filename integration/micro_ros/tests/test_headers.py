@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from .conftest import build, configure
+from integration.micro_ros.tests.conftest import build, configure
 
 VARIABLE = "EPG_TEST_MICRO_ROS_HEADERS"
 """Variable that names folders of other libmicroros, each with include/, separated as in PATH."""
@@ -20,7 +20,7 @@ LIBRARY = "libmicroros.a"
 def test_it_compiles(tmp_path: Path) -> None:
     given = os.environ.get(VARIABLE)
     if not given:
-        pytest.skip(f"{VARIABLE} names no other libmicroros: docs/micro-ros.md says what it is for")
+        pytest.skip(f"{VARIABLE} names no other libmicroros: its README says what it is for")
     for number, folder in enumerate(given.split(os.pathsep)):
         library = tmp_path / f"library_{number}"
         shutil.copytree(Path(folder) / "include", library / "include")

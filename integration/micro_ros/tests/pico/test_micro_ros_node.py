@@ -7,11 +7,10 @@ from collections.abc import Iterator
 
 import pytest
 
+from integration.micro_ros.tests.pico.firmware import MicroRosJiwy
 from tests.platforms.pico.xrce.board import CONSOLE_PORT
 from tests.platforms.pico.xrce.checks import ENDS, assert_undisturbed
 from tests.platforms.pico.xrce.scenarios import assert_holds, assert_is_back, hold, restart
-
-from .firmware import MicroRosJiwy
 
 HEAP = ("_malloc_r", "_sbrk")
 SILENCE = 1000  # milliseconds after which micro_ros gives a silent agent up

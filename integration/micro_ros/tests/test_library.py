@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from .conftest import build, configure
+from integration.micro_ros.tests.conftest import build, configure
 
 
 def changed_library(folder: Path, name: str, value: str) -> Path:
