@@ -39,7 +39,8 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     if "-" in id:
         entry = find_entry(id)
         if entry is not None:
-            sys.stdout.write(to_json(_data(id, entry)) if options.json else _explanation(id, entry))
+            data = _data(id, entry)
+            sys.stdout.write(to_json(data) if options.json else f"{textwrap.fill(data['text'], 100)}\n")
             return 0
         if not (options.tcf or options.build):
             hint = did_you_mean(id, (entry.id for entry in read_page()), "ids of messages")
@@ -76,17 +77,9 @@ def _without_wire(port: str, descriptions: list[dict[str, Any]], diagnostics: Di
     return 1
 
 
-def _explanation(id: str, entry: Entry) -> str:
-    """The entry of a message on the page of errors, as plain text."""
-    data = _data(id, entry)
-    example = f"\n\n{data['example']}" if entry.example else ""
-    return f"{textwrap.fill(data['text'], 100)}{example}\n"
-
-
 def _data(id: str, entry: Entry) -> dict[str, str]:
     """An entry of the page of errors, without the links of the page, which lead nowhere in a terminal."""
-    text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", entry.text)
-    return {"id": id, "text": text, "example": entry.example}
+    return {"id": id, "text": re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", entry.text)}
 
 
 def _from_files(options: argparse.Namespace, diagnostics: Diagnostics) -> dict[str, Any]:

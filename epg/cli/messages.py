@@ -18,7 +18,6 @@ from epg.generator.dataclass import dataclass
 
 PAGE = "errors.md"
 _HEADING = re.compile(r"^### (\S+)\n", re.MULTILINE)
-_EXAMPLE = re.compile(r"^ {4}(\S.*)$", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -30,8 +29,7 @@ class Entry:
     """
 
     id: str
-    text: str  # Markdown, without the example: meaning, reason, remedy
-    example: str  # the first line of an example of the message, or ""
+    text: str  # Markdown: meaning, reason, remedy
 
     @property
     def summary(self) -> str:
@@ -64,12 +62,4 @@ def find_entry(id: str) -> Entry | None:
 
 
 def _entry(id: str, body: str) -> Entry:
-    body = re.split(r"^## ", body, maxsplit=1, flags=re.MULTILINE)[0]
-    example = _EXAMPLE.search(body)
-    text = " ".join(_EXAMPLE.sub("", body).split())
-    return Entry(id, text, _with_id(example[1], id) if example else "")
-
-
-def _with_id(example: str, id: str) -> str:
-    """The example as it is printed: the page leaves out an id that is its heading."""
-    return example if re.search(r" \[[a-z0-9._-]+\]$", example) else f"{example} [{id}]"
+    return Entry(id, " ".join(body.partition("\n## ")[0].split()))
