@@ -24,7 +24,7 @@ from epg.runs.scenario import Profile, Scenario
 from epg.simulate.load_scenario import load_scenario
 from tests.doubles.toolchain import Missing
 from tests.ros2.build import Build, build_robots
-from tests.ros2.correlation import errors, fine_lag, lag
+from tests.ros2.correlation import fine_lag
 from tests.ros2.network import network
 from tests.ros2.situations import JIWY as JIWY_AXES
 from tests.ros2.situations import SITUATIONS, Follower, Logs
@@ -40,13 +40,13 @@ THESIS_TELEOPERATION = {"setpoint to robot 1": ("66", "100"), "robot 1 to robot 
 THESIS_TELEOPERATION |= {"setpoint to robot 3": ("99", "133")}
 """The thesis's table 5.6, pan and tilt in ms."""
 
-FINER = ["finer: pan or left", "finer: tilt or right", "simulated: pan or left", "simulated: tilt or right"]
-"""The last columns of the tables of lags."""
+COLUMNS = ["thesis: pan", "thesis: tilt", "pan or left", "tilt or right"]
+COLUMNS += ["simulated: pan or left", "simulated: tilt or right"]
+"""The columns of the tables of lags."""
 
 RESOLUTION = (
-    "The thesis's table 5.5 has real JIWYs behind agents on two Raspberry Pis. Its resolution, and that of the columns "
-    "beside it, is the interval of 33 ms; the finer and the simulated columns are least squares fits in steps of 1 "
-    "ms."
+    "The thesis's table 5.5 has real JIWYs behind agents on two Raspberry Pis, in steps of its interval of 33 ms. The "
+    "other columns are least squares fits in steps of 1 ms."
 )
 
 
@@ -59,7 +59,7 @@ def main() -> None:
             logs = {number: measure(number, build, Path(folder), options.seconds) for number in numbers}
             simulated = simulate(numbers, Path(folder) / "systems") if options.systems else {}
             tables = [shared_table(logs, simulated), teleoperation_table(logs, simulated)]
-            tables += [tracking_table(logs), timing_table(logs)]
+            tables.append(timing_table(logs))
     except Missing as missing:
         raise SystemExit(str(missing)) from None
     show("network_situations", tables, options.write, command_line("network_situations"))
@@ -105,19 +105,15 @@ def after_begin(logs: Logs, robot: Follower, log: Sequence[tuple[float, float]])
     return logs.window(log, begin_of(robot), float("inf"))
 
 
-def lags(logs: Logs, robot: Follower, source: str) -> list[tuple[float, float]]:
-    """The lag of a robot's position behind ``source`` for each axis, in ms: with the thesis's resolution, and finer."""
+def lags(logs: Logs, robot: Follower, source: str) -> list[str]:
+    """The lag of a robot's position behind ``source`` for each axis, in ms."""
     found = []
     for axis in robot.axes:
         logged = logs.setpoints | logs.positions
         reference = after_begin(logs, robot, logged[f"{source}/{axis}"])
         own = after_begin(logs, robot, logs.positions[f"{robot.namespace}/{axis}"])
-        found.append((1000 * lag(reference, own), 1000 * fine_lag(reference, own)))
+        found.append(f"{1000 * fine_lag(reference, own):.0f}")
     return found
-
-
-def lag_cells(found: Sequence[tuple[float, float]]) -> list[str]:
-    return [*(f"{coarse:.0f}" for coarse, _ in found), *(f"{fine:.0f}" for _, fine in found)]
 
 
 Simulated = Mapping[str, Sequence[str]]
@@ -130,10 +126,9 @@ def shared_table(logs: dict[int, Logs], simulated: Simulated) -> Table:
         for robot in SITUATIONS[number]:
             name = f"{number}: {robot.node.removesuffix('_node')} {robot.serial}, {robot.follows.removeprefix('/')}"
             thesis = THESIS_SHARED[robot.serial] if number == 1 else ("-", "-")
-            cells = lag_cells(lags(logs[number], robot, robot.follows))
+            cells = lags(logs[number], robot, robot.follows)
             rows.append([name, *thesis, *cells, *simulated.get(name, ("-", "-"))])
-    head = ["situation and robot", "thesis: pan", "thesis: tilt", "pan or left", "tilt or right"]
-    return Table("Lag of positions behind setpoints, ms", [*head, *FINER], rows, [RESOLUTION])
+    return Table("Lag of positions behind setpoints, ms", ["situation and robot", *COLUMNS], rows, [RESOLUTION])
 
 
 def teleoperation_table(logs: dict[int, Logs], simulated: Simulated) -> Table:
@@ -147,36 +142,17 @@ def teleoperation_table(logs: dict[int, Logs], simulated: Simulated) -> Table:
         "setpoint to robot 4": (robots[4], "/profile"),
     }
     rows = [
-        [f"3: {name}", *THESIS_TELEOPERATION.get(name, ("-", "-")), *lag_cells(lags(logs[3], robot, source))]
+        [f"3: {name}", *THESIS_TELEOPERATION.get(name, ("-", "-")), *lags(logs[3], robot, source)]
         for name, (robot, source) in pairs.items()
         if 3 in logs
     ]
     rows += [
-        [f"5: RELbot 1 to {robot.serial}", "-", "-", *lag_cells(lags(logs[5], robot, robot.follows))]
+        [f"5: RELbot 1 to {robot.serial}", "-", "-", *lags(logs[5], robot, robot.follows)]
         for robot in SITUATIONS[5][1:]
         if 5 in logs
     ]
     rows = [[*row, *simulated.get(row[0], ("-", "-"))] for row in rows]
-    head = ["situation, from and to", "thesis: pan", "thesis: tilt", "pan or left", "tilt or right"]
-    return Table("Lag in teleoperation, ms", [*head, *FINER], rows)
-
-
-def tracking_table(logs: dict[int, Logs]) -> Table:
-    rows = []
-    for number in sorted({1, 2, 3, 4} & logs.keys()):
-        profiles = profiles_for(number)
-        for robot in SITUATIONS[number]:
-            if robot.follows in ("/profile", "/other_profile"):
-                cells = []
-                for axis in robot.axes:
-                    heard = after_begin(logs[number], robot, logs[number].positions[f"{robot.namespace}/{axis}"])
-                    profile = profiles[f"{robot.follows}/{axis}"]
-                    rms, largest = errors(heard, [profile.value(at - logs[number].begin) for at, _ in heard])
-                    cells += [f"{1000 * rms:.1f}", f"{1000 * largest:.1f}"]
-                name = f"{number}: {robot.node.removesuffix('_node')} {robot.serial}"
-                rows.append([name, *cells])
-    head = ["situation and robot", "RMS: pan or left", "largest", "RMS: tilt or right", "largest: tilt or right"]
-    return Table("Error of positions when they are heard, against the profile, mrad", head, rows)
+    return Table("Lag in teleoperation, ms", ["situation, from and to", *COLUMNS], rows)
 
 
 def timing_table(logs: dict[int, Logs]) -> Table:

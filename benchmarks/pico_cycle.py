@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measures the cost of a control cycle of JIWY on a Pico: instructions and time of each part, and the size of images.
+"""Measures the cost of a control cycle of JIWY on a Pico: instructions and time of each part.
 
 RP2040: EPG's images, and a program written by hand for the SDK alone (pico/handwritten.c), in EPG's emulator.
 RP2350: EPG's image on an emulated Cortex-M33, which counts instructions but not time.
@@ -12,7 +12,6 @@ import subprocess
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from statistics import fmean
 
 from measure import ROOT, need
@@ -24,7 +23,7 @@ from tests.doubles.rp2350.cortex_m33 import COMPILER_ARITHMETIC, RETURN, Process
 from tests.doubles.toolchain import arm_gcc, node, pico_sdk, rp2040js, unicorn
 from tests.platforms.pico.closed_loop.recording import INPUTS
 from tests.platforms.pico.closed_loop.robot import AXES, connect
-from tests.platforms.pico.images import freertos_kernel, size_of
+from tests.platforms.pico.images import freertos_kernel
 from tests.platforms.pico.rp2350.profile import cycles, start
 from tests.platforms.pico.timing.programs import PROJECT, Program, by_hand, generated
 
@@ -62,7 +61,7 @@ def main() -> None:
     }
     costs = {title: rp2040(program, parts, options.cycles) for title, (program, parts) in programs.items()}
     tables = [rp2040_table(costs, options.cycles), unused_table(options.cycles)]
-    tables += [rp2350_table(options.cycles), size_table()]
+    tables.append(rp2350_table(options.cycles))
     show("pico_cycle", tables, options.write, command_line("pico_cycle"))
 
 
@@ -236,29 +235,6 @@ class Parts:
             self.part = self.entries[pc]
             self.back = self.processor.cpu.reg_read(self.processor.arm.UC_ARM_REG_LR) & ~1
         self.counts[self.part] += 1
-
-
-# Size -----------------------------------------------------------------------------------------------------------------
-
-
-def size_table() -> Table:
-    rows = []
-    for board, title in (("pico", "Pico"), ("pico2", "Pico 2")):
-        for platform, name in (("bare_metal", "bare metal"), ("freertos", "FreeRTOS")):
-            rows.append(size_row(f"EPG, {title}, {name}", board, platform, "jiwy_in_ram_33"))
-        rows.append(size_row(f"by hand, {title}, bare metal", board, "bare_metal", "by_hand_wrap_core1"))
-    notes = [
-        "All run from RAM here; arithmetic is the SDK's own. By hand: the SDK's stdio over USB, setpoints, "
-        "positions and statistics, without the rest of the console, capture (16 kB of bss) and store."
-    ]
-    return Table("Size of JIWY, bytes", ["image", "text", "data", "bss"], rows, notes)
-
-
-def size_row(title: str, board: str, platform: str, executable: str) -> list[str]:
-    variables = {"PLATFORM": platform}
-    folder: Path = build(PROJECT, board=board, targets=[executable], variables=variables, stock_arithmetic=True)
-    size = size_of(folder / f"{executable}.elf")
-    return [title, str(size.text), str(size.data), str(size.bss)]
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measures the text of JIWY's images on a Pico: by part of the program, and beside eProsima's client without EPG.
+"""Measures the text of JIWY's images on a Pico beside eProsima's client without EPG.
 
 Three programs for the same robot are written by hand, with EPG's model and encoder driver: ``client_alone``.  The first
 one does not communicate.  The second one uses the SDK's serial port on USB.  The third one uses eProsima's client, and
@@ -8,8 +8,6 @@ is a node of an XRCE agent.
 
 from __future__ import annotations
 
-import re
-from collections import Counter
 from pathlib import Path
 
 from measure import need
@@ -35,25 +33,6 @@ HANDWRITTEN = {
 }
 OTHERS = (("published: Micro XRCE-DDS client, publisher and subscriber [1]", "less than 75,000", "about 3,000"),)
 """Programs that cannot be built here: text, and data with bss."""
-PARTS = (
-    ("eProsima's client", r"libepg_micro_xrce_dds_client\.a"),
-    ("middleware xrce", r"libepg_middleware_xrce\.a"),
-    ("console", r"libepg_middleware_console\.a"),
-    ("services and parameters", r"libepg_communication\w*\.a\((service|parameter_|reply|message_parameter)"),
-    ("diagnostics", r"libepg_communication\w*\.a\(diagnostics"),
-    ("stored values", r"libepg_communication\w*\.a\(store|mcu/src/store\.c|families/rp2/src/flash\.c|/hardware_flash/"),
-    ("other communication", r"libepg_communication\w*\.a"),
-    ("USB device", r"/tinyusb/|/usb/"),
-    ("generated code and tables", r"libjiwy\w*\.a\(jiwy_(?!model)"),
-    ("model", r"libjiwy_model\w*\.a|libjiwy\w*\.a\(jiwy_model"),
-    ("control", r"libepg_runtime\w*\.a"),
-    ("C library, arithmetic", r"lib(g|c|gcc|m)\.a|pico_(double|float|divider|int64_ops)/"),
-    ("port layer, SDK", r""),
-)
-"""Parts of an image: a file of the linker's map belongs to the first part whose expression is found in its path."""
-REST = "heap, stack and fill"
-"""The program `size` counts the SDK's sections for heap and stack as text."""
-NO_TEXT = (".bss", "COMMON", ".stack", ".heap", ".uninit", ".scratch", ".debug", ".comment", ".ARM")
 
 
 def main() -> None:
@@ -63,14 +42,11 @@ def main() -> None:
     ours = {name: images("pico", "bare_metal", "jiwy_in_ram", middleware=name) for name in MIDDLEWARES}
     by_hand = build("benchmarks/client_alone", variables=client)
     check_that_it_publishes(by_hand / "by_hand_client.elf")
-    tables = [
-        part_table({name: folder / "jiwy_in_ram.elf" for name, folder in ours.items()}),
-        comparison(
-            {MIDDLEWARES[name]: folder / "jiwy_in_ram.elf" for name, folder in ours.items()},
-            {title: by_hand / f"by_hand_{name}.elf" for name, title in HANDWRITTEN.items()},
-        ),
-    ]
-    show("pico_text", tables, options.write, command_line("pico_text"))
+    table = comparison(
+        {MIDDLEWARES[name]: folder / "jiwy_in_ram.elf" for name, folder in ours.items()},
+        {title: by_hand / f"by_hand_{name}.elf" for name, title in HANDWRITTEN.items()},
+    )
+    show("pico_text", [table], options.write, command_line("pico_text"))
 
 
 def check_that_it_publishes(elf: Path) -> None:
@@ -82,54 +58,30 @@ def check_that_it_publishes(elf: Path) -> None:
             agent.wait_for("rt/tilt_publisher")
 
 
-def parts_of(elf: Path) -> Counter[str]:
-    """Bytes of text of each part, from the linker's map beside ``elf``."""
-    text = Path(f"{elf}.map").read_text(encoding="utf-8")
-    text = text[text.index("Linker script and memory map") :]
-    text = re.sub(r"^( \S+)\n +", r"\1 ", text, flags=re.MULTILINE)  # a long name has a line for itself
-    found: Counter[str] = Counter()
-    for section, size, file in re.findall(r"^ (\.?\w\S*) +0x0*[12]\w{7} +0x(\w+) (\S+)$", text, re.MULTILINE):
-        if not section.startswith(NO_TEXT):
-            found[next(part for part, pattern in PARTS if re.search(pattern, file))] += int(size, 16)
-    found[REST] = size_of(elf).text - sum(found.values())
-    return found
-
-
-def part_table(elves: dict[str, Path]) -> Table:
-    columns = [parts_of(elf) for elf in elves.values()]
-    names = [*(part for part, _ in PARTS), REST]
-    rows = [[name, *(str(column[name]) for column in columns)] for name in names]
-    totals = [sum(column.values()) for column in columns]
-    rows.append(["all", *map(str, totals)])
-    rows.append(["beyond none", *(str(total - totals[0]) for total in totals)])
-    of = dict(zip(elves, totals, strict=True))
-    xrce, console = of["xrce"] - of["none"], of["xrce_console"] - of["xrce"]
-    notes = [
-        f"Aims: xrce at most 27,000 bytes beyond none: {verdict(xrce, 27_000)}; "
-        f"the console at most 20,000 bytes beyond xrce: {verdict(console, 20_000)}.",
-        "Topics only: `parameters: false`, `diagnostics: 0 s`. Bytes of code, constants and initial values in the "
-        "linker's map, bare metal. All images run from RAM here.",
-    ]
-    return Table("Text of JIWY's images on a Pico by part", ["part", *map(MIDDLEWARES.__getitem__, elves)], rows, notes)
-
-
 def verdict(size: int, aim: int) -> str:
     return f"holds ({size:,})" if size <= aim else f"missed by {size - aim:,} ({size:,})"
 
 
 def comparison(ours: dict[str, Path], by_hand: dict[str, Path]) -> Table:
     rows = []
+    text_of = {}
     for group, programs in (("EPG, ", ours), ("", by_hand)):
         sizes = {title: size_of(elf) for title, elf in programs.items()}
         least = next(iter(sizes.values()))  # each group begins with the program that does not communicate
         for title, size in sizes.items():
             beyond = [f"{size.text - least.text:,}", f"{size.data + size.bss - least.data - least.bss:,}"]
+            text_of[group + title] = size.text
             rows.append([group + title, f"{size.text:,}", f"{size.data + size.bss:,}", *beyond])
     rows += [[title, text, ram, "", ""] for title, text, ram in OTHERS]
     head = ["program", "text", "data and bss", "text beyond none", "data and bss beyond none"]
+    xrce = text_of["EPG, xrce"] - text_of["EPG, none"]
+    console = text_of["EPG, xrce and console"] - text_of["EPG, xrce"]
     notes = [
-        "Same board, model and encoders. The program with eProsima's client has JIWY's four topics of values, "
-        "without enabling, reset, time stamps and checks of received frames.",
+        f"Aims: xrce at most 27,000 bytes beyond none: {verdict(xrce, 27_000)}; "
+        f"the console at most 20,000 bytes beyond xrce: {verdict(console, 20_000)}.",
+        "Same board, bare metal, model and encoders; all run from RAM here. Topics only: `parameters: false`, "
+        "`diagnostics: 0 s`. The program with eProsima's client has JIWY's four topics of values, without enabling, "
+        "reset, time stamps and checks of received frames.",
         "[1] <https://micro.ros.org/docs/concepts/middleware/Micro_XRCE-DDS/>: flash and RAM of the application.",
     ]
     return Table("Text of JIWY beside other programs, bytes", head, rows, notes)

@@ -49,9 +49,7 @@ def axis_rows(axis: str, *columns: Sequence[Run]) -> list[list[str]]:
     """Rows with the runs of the boards, and of both simulations."""
     lags = [sorted(message.lag for run in runs for message in run.messages[axis]) for runs in columns]
     numbers = {
-        "message, min": [each[0] for each in lags],
         "message, mean": [statistics.fmean(each) for each in lags],
-        "message, 99%": [each[int(0.99 * len(each))] for each in lags],
         "message, max": [each[-1] for each in lags],
         "position": [statistics.fmean(run.follows(axis) for run in runs) for runs in columns],
     }
