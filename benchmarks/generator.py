@@ -53,9 +53,6 @@ def actions(folder: Path) -> Mapping[str, Callable[[], object]]:
     return {
         BARE: lambda: run([*python, "-S", "-c", "pass"]),
         PASS: lambda: run([*python, "-c", "pass"]),
-        "import yaml": lambda: run([*python, "-c", "import yaml"]),
-        "import jinja2": lambda: run([*python, "-c", "import jinja2"]),
-        "import jsonschema": lambda: run([*python, "-c", "import jsonschema"]),
         LIBRARIES: lambda: run([*python, "-c", "import yaml, jinja2"]),
         CHECK: lambda: run([*python, EPG, "check", *jiwy_files("rpi_pico2_freertos_jiwy.tcf")]),
         PICO: lambda: cold(folder / "pico", *PICO_ARGUMENTS),

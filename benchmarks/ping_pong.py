@@ -3,15 +3,13 @@
 
     python benchmarks/ping_pong.py [--pings 300] [--flat 5000] [--write]
 
-The middlewares are dds, and xrce by UDP.  The latter needs eProsima's agent (``EPG_XRCE_AGENT``, or ``MicroXRCEAgent``
-on PATH) and is left out without it.  The first row is an echo in Python instead of a target: it shows the time that
-the peer and DDS take.
+The middleware is dds; ``xrce_round_trip.py`` measures xrce.  The first row is an echo in Python instead of a target: it
+shows the time that the peer and DDS take.
 """
 
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -30,12 +28,11 @@ from summary import head, read_run, rows, summarise  # noqa: E402  # of the exam
 from epg.generator import bootstrap  # noqa: E402
 
 QOS = {"best": "best_effort", "default": "reliable"}
-PORT = 8899
 DOMAIN = 92
-"""The DDS domain of this benchmark.  Agents with Fast DDS do not know the tags that separate tests from each other."""
+"""The DDS domain of this benchmark."""
 
-SHOWN = (0, 2, 3, 6, 7, 8, 10)
-"""The columns of the example's table that the page has: label, lost, mean, minimum, maximum, median, 99 %."""
+SHOWN = (0, 2, 3, 10, 7)
+"""The columns of the example's table that the page has: label, lost, mean, 99 %, maximum."""
 
 THESIS = (
     "The thesis measured means of 1.92 ms (bare metal, best/best) to 4.96 ms (FreeRTOS, default/default) on other "
@@ -44,12 +41,12 @@ THESIS = (
 """Of the thesis's table E.1, the least and the greatest mean of the rows in which both topics have the same QoS."""
 
 
-def build(folder: Path, middleware: str) -> Path:
+def build(folder: Path) -> Path:
     """Builds the four programs, optimised, and returns their folder."""
-    options = [f"-DPING_PONG_MIDDLEWARE={middleware}", "-DCMAKE_BUILD_TYPE=Release"]
-    run(["cmake", "-S", EXAMPLE, "-B", folder / middleware, f"-DPython3_EXECUTABLE={sys.executable}", *options])
-    run(["cmake", "--build", folder / middleware, "--parallel"])
-    return folder / middleware
+    options = ["-DPING_PONG_MIDDLEWARE=dds", "-DCMAKE_BUILD_TYPE=Release", f"-DPython3_EXECUTABLE={sys.executable}"]
+    run(["cmake", "-S", EXAMPLE, "-B", folder, *options])
+    run(["cmake", "--build", folder, "--parallel"])
+    return folder
 
 
 @contextmanager
@@ -87,29 +84,20 @@ def main() -> int:
     bootstrap.ensure("ros")
     from tests.ros2.network import network
 
-    agent = os.environ.get("EPG_XRCE_AGENT") or shutil.which("MicroXRCEAgent")
-    found: list[list[str]] = []
-    with tempfile.TemporaryDirectory() as temporary, network(DOMAIN, tagged=agent is None) as net:
-        folder = Path(temporary)
+    with tempfile.TemporaryDirectory() as temporary, network(DOMAIN) as net:
         packages = str(bootstrap.package_folder("ros"))
         environment = {**net.environment, "PYTHONPATH": f"{packages}:{net.environment.get('PYTHONPATH', '')}"}
-        found += measure("echo in Python", ["--baseline"], environment, options.pings, options.flat)
-        for middleware in ("dds", *(("xrce",) if agent else ())):
-            programs = build(folder, middleware)
-            for name, reliability in QOS.items():
-                program = programs / f"ping_pong_{name}_{name}_host"
-                own = ["--agent", f"127.0.0.1:{PORT}"] if middleware == "xrce" else []
-                qos = ["--publisher", reliability, "--subscriber", reliability]
-                # A new agent each time has no entities of the previous client.
-                listening = [agent, "udp4", "-p", str(PORT)] if own else ["sleep", "infinity"]
-                outer = {**environment, "XRCE_DOMAIN_ID_OVERRIDE": str(net.domain)}
-                with process(listening, outer), process([program, "--realtime", "--quiet", *own], environment):
-                    found += measure(f"host, {middleware}", qos, environment, options.pings, options.flat)
+        found = measure("echo in Python", ["--baseline"], environment, options.pings, options.flat)
+        programs = build(Path(temporary))
+        for name, reliability in QOS.items():
+            program = programs / f"ping_pong_{name}_{name}_host"
+            qos = ["--publisher", reliability, "--subscriber", reliability]
+            with process([program, "--realtime", "--quiet"], environment):
+                found += measure("host, dds", qos, environment, options.pings, options.flat)
     shown = [chosen(row) for row in found]
     columns = ["what, publisher/subscriber, rate", *chosen(head())[1:]]
     load = os.getloadavg()[0]
     notes = [f"The load average of this computer was {load:.0f}: where it is high, maxima are other programs'."]
-    notes += [] if agent else ["xrce was not measured: no agent was found."]
     table = Table("Round trip on this computer", columns, shown, [*notes, THESIS])
     show("ping_pong", [table], options.write, command_line("ping_pong"))
     return 0

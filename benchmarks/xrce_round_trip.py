@@ -102,7 +102,7 @@ def round_trips(folder: Path, count: int) -> Table:
                     except Missing:
                         continue
                     rows.append([board, agent, qos, f"{rate:g} Hz" if rate else "flat out", *cells(found)])
-    head = ["board", "agent", "QoS", "rate", "lost", "mean", "min", "median", "99%", "max"]
+    head = ["board", "agent", "QoS", "rate", "lost", "mean", "99%", "max"]
     notes = [
         "On one computer, over UDP on its loopback interface, and through eProsima's agent twice over DDS. The "
         "measuring program, in Python, is part of it.",
@@ -168,7 +168,7 @@ def running(board: Path, address: str, reliable: bool) -> Iterator[None]:
 
 
 def cells(found: Summary) -> list[str]:
-    times = (found.mean, found.minimum, found.median, found.percentiles[1], found.maximum)
+    times = (found.mean, found.percentiles[1], found.maximum)
     return [str(found.lost), *(f"{1000 * seconds:.2f}" for seconds in times)]
 
 
