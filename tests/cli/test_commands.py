@@ -515,8 +515,8 @@ def test_explain_explains_a_message_without_a_build(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(["explain", id]) == 0
-    said = capsys.readouterr().out
-    assert said.startswith("An input of the model is not bound.") and "[unbound-input]\n" in said
+    remedy = "Bind it to a component; the kind `constant` gives a fixed value."
+    assert " ".join(capsys.readouterr().out.split()) == f"An input of the model is not bound. {remedy}"
     assert main(["explain", "--json", id]) == 0
     assert json.loads(capsys.readouterr().out)["id"] == "unbound-input"
     assert main(["explain", "timer-used-twice"]) == 0
