@@ -26,13 +26,12 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.generator.catalog.catalog import load_catalog
     from epg.generator.check.middleware import offered
     from epg.generator.data import targets_roots
-    from epg.generator.documents.tcf import predefined_tcf_names
 
     roots = targets_roots(user_roots())
     catalog = load_catalog(roots, diagnostics)
     targets = [target for name in catalog.target_names() if (target := catalog.find_target(name)) is not None]
     kinds = [kind for name in catalog.kind_names() if (kind := catalog.find_kind(name)) is not None]
-    files = predefined_tcf_names(roots)
+    files = catalog.configuration_names()
     if options.json:
         data = {"targets": [_target(t, catalog) for t in targets], "kinds": [_kind(k) for k in kinds], "tcf": files}
         sys.stdout.write(to_json(data))

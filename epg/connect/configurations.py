@@ -20,7 +20,7 @@ from epg.generator.check.configuration import Configuration
 from epg.generator.check.middleware import first_middleware
 from epg.generator.dataclass import dataclass
 from epg.generator.diagnostics import Diagnostics
-from epg.generator.documents.tcf import load_tcf_chain, predefined_tcf_names
+from epg.generator.documents.tcf import load_tcf_chain
 from epg.generator.emit.project_files import project_folder
 from epg.generator.models.model import Model
 from epg.generator.project import Request, load_configuration
@@ -74,7 +74,7 @@ class Configurations:
     def choices(self) -> tuple[PredefinedTarget, ...]:
         """Predefined configurations first, then targets, each by name."""
         catalog = self.catalog
-        found = [self._predefined(name, catalog) for name in predefined_tcf_names(self._roots)]
+        found = [self._predefined(name, catalog) for name in catalog.configuration_names()]
         bare = [
             PredefinedTarget(name, "", target, None, "")
             for name in catalog.target_names()
@@ -152,7 +152,7 @@ class Configurations:
         if target is None:
             return None
         problems = Diagnostics()
-        configuration = load_configuration(request, catalog, problems)
+        configuration = load_configuration(request, catalog, problems, pins_required=False)
         problem = next((item.message for item in problems if item.severity == "error"), "")
         return PredefinedTarget(file.removesuffix(".tcf"), chain[0].path.parent.name, target, configuration, problem)
 

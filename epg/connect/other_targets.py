@@ -9,7 +9,7 @@ from pathlib import Path
 
 from epg.connect.projects import Job
 from epg.generator.diagnostics import Diagnostic, Diagnostics
-from epg.generator.documents.tcf import load_tcf_chain
+from epg.generator.documents.tcf import files_of, load_tcf_chain
 from epg.generator.documents.text_file import NO_DRAFTS, Drafts
 from epg.generator.project import Request, load_parts
 
@@ -23,7 +23,7 @@ def readers(path: Path, jobs: Sequence[Job]) -> list[Job]:
 def _files(request: Request) -> Iterator[Path]:
     yield request.bindings
     chain = load_tcf_chain(request.tcf, request.roots, Diagnostics(), beside=request.beside)
-    yield from (file.path for file in chain)
+    yield from files_of(chain)
 
 
 def new_errors(texts: Mapping[Path, str], jobs: Sequence[Job]) -> dict[str, list[Diagnostic]]:

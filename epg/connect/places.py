@@ -11,8 +11,8 @@ from epg.generator.models.model import Model
 from epg.generator.source import Span, YamlNode
 
 _SECTIONS = ("inputs", "outputs")
-MISSING = "missing-key"
-"""The id of messages about a missing key.  ``about`` is its path, below the component if it is a key of one."""
+MISSING = ("missing-key", "unwired")
+"""The ids of messages about a missing key.  ``about`` is its path, below the component if it is a key of one."""
 
 _Key = tuple[str, int, int, str]
 """The file, line and column at which a key begins, and its name; "" for a key that names no port or component."""
@@ -37,7 +37,7 @@ class Places:
     def port(self, diagnostic: Diagnostic) -> str | None:
         """The model port that a message is about; None if it is not about a port."""
         span = diagnostic.span
-        section, _, name = diagnostic.about.partition(".") if diagnostic.id != MISSING else ("", "", "")
+        section, _, name = diagnostic.about.partition(".") if diagnostic.id not in MISSING else ("", "", "")
         if section in _SECTIONS and span.file == self._bindings:
             return name
         return self._declared.get(span) or self.port_at(span)
@@ -61,7 +61,7 @@ class Places:
             return []
         if span.file == self._bindings:
             return list(before[-1][:2])
-        if diagnostic.id != MISSING or not diagnostic.about:
+        if diagnostic.id not in MISSING or not diagnostic.about:
             return list(before[-1])
         return [*(before[-1][:2] if before[-1][0] == "components" else ()), *diagnostic.about.split(".")]
 

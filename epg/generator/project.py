@@ -33,6 +33,7 @@ from epg.generator.resolve.allocation import Assignments
 from epg.generator.resolve.application import Application
 from epg.generator.resolve.claims import TICK
 from epg.generator.resolve.resolve import PlantFiles, allocate_hardware, resolve
+from epg.generator.resolve.unwired import report_unwired
 from epg.generator.source import Span, YamlNode
 
 Settings = list[tuple[tuple[str, ...], YamlNode]]
@@ -142,7 +143,7 @@ def load_configuration(
         return None
     of_system, made = _of_system(request.system, chain, catalog, diagnostics)
     settings = [*of_system, *settings]
-    configuration = check_configuration(chain, settings, catalog, diagnostics, pins_required=pins_required)
+    configuration = _checked(chain, settings, catalog, diagnostics, pins_required)
     if configuration is not None and made:
         configuration = replace(configuration, made=made)
     if request.ioc is None:
@@ -153,6 +154,22 @@ def load_configuration(
     if configuration is None or ioc is None:
         return None
     return with_other_code(configuration, ioc, diagnostics, request.caller)
+
+
+def _checked(
+    chain: Sequence[TcfFile], settings: Settings, catalog: Catalog, diagnostics: Diagnostics, pins_required: bool
+) -> Configuration | None:
+    """The checked configuration.  If only pins are missing in it, free ones are proposed for all components."""
+    problems = Diagnostics()
+    configuration = check_configuration(chain, settings, catalog, problems, pins_required=pins_required)
+    if configuration is None and pins_required:
+        others = Diagnostics()
+        unwired = check_configuration(chain, settings, catalog, others, pins_required=False)
+        if unwired is not None:
+            report_unwired(unwired, others)
+            problems = others
+    diagnostics.add_all(problems)
+    return configuration
 
 
 def _of_system(

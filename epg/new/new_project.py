@@ -28,12 +28,13 @@ from epg.generator.check.target_names import check_name, check_sdk_headers
 from epg.generator.data import data_folder, targets_roots
 from epg.generator.dataclass import dataclass
 from epg.generator.diagnostics import Diagnostics
-from epg.generator.documents.tcf import load_tcf_chain, predefined_tcf_names
+from epg.generator.documents.tcf import load_tcf_chain
 from epg.generator.documents.text_file import is_file
 from epg.generator.emit.folder import present_files, write_folder
 from epg.generator.emit.project_files import ProjectPlan, StandIn, project_files, project_folder, project_names
 from epg.generator.importers import Model, load_model
 from epg.generator.project import Request, load_application, load_configuration
+from epg.generator.resolve.first_fit import first_fit
 from epg.generator.resolve.matching import Match, match_ports
 from epg.generator.source import Span
 from epg.generator.tools.tools import load_tools
@@ -198,14 +199,14 @@ def project_name(folder: Path) -> str:
 def _find_base(request: ProjectRequest, catalog: Catalog, diagnostics: Diagnostics) -> _Base | None:
     """The target or the predefined configuration that the request names, or None after reporting mistakes."""
     name = request.target
-    targets, files = catalog.target_names(), predefined_tcf_names(request.roots)
+    targets, files = catalog.target_names(), catalog.configuration_names()
     extends = "" if name in targets else f"{name.removesuffix('.tcf')}.tcf"
     configuration = None
     if not extends:
         target = catalog.find_target(name)
     elif extends in files:
         predefined = Request("new", extends, Path(), Path(), user_roots=request.user_roots, beside=request.roots[-1])
-        configuration = load_configuration(predefined, catalog, diagnostics)
+        configuration = load_configuration(predefined, catalog, diagnostics, pins_required=False)
         target = configuration.target if configuration is not None else None
     else:
         _report_unknown(request, targets, catalog, [file.removesuffix(".tcf") for file in files], diagnostics)
@@ -303,8 +304,18 @@ def _plan(name: str, base: _Base, model: Model, place: str, request: ProjectRequ
         subscriptions=[str(c.parameters["topic"]) for c in components if c.kind.communication == "subscribe"],
         actuators=[c.name for c in components if any(port.drive for port in c.kind.ports)],
         carriers=[c.name for c in components if c.kind.transport],
+        pins=_free_pins(base.configuration),
         versions={"epg": epg.__version__, **{tool.name: tool.tested for tool in tools.values() if tool.tested}},
     )
+
+
+def _free_pins(configuration: Configuration | None) -> Mapping[str, Mapping[str, str]]:
+    """Pins for the components without pins, by component and signal; empty if there are no free pins for all."""
+    found = (configuration and first_fit(configuration, configuration.control.period)) or {}
+    pins: dict[str, dict[str, str]] = {}
+    for (component, signal), pin in found.items():
+        pins.setdefault(component, {})[signal] = pin
+    return pins
 
 
 def _make(

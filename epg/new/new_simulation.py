@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
 from epg.generator.check.configuration import Component
 from epg.generator.data import data_folder
 from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.tcf import find_tcf
 from epg.generator.documents.yaml_file import load_yaml
 from epg.generator.emit.project_files import MovedAxis
 from epg.generator.importers import Model
@@ -19,20 +20,20 @@ PLANT, BINDINGS = "plant", "plant.bindings.yaml"
 _SIGNAL_PART = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
-def robot_folder(extends: str, roots: Iterable[Path]) -> Path | None:
+def robot_folder(extends: str, roots: Sequence[Path]) -> Path | None:
     """The example with a plant for the robot whose predefined ``.tcf`` is ``extends``; None if there is none.
 
     The example is named as the robot's folder: the plant for ``robots/jiwy/host_jiwy.tcf`` is in
     ``examples/jiwy/plant``.
     """
-    for root in roots:
-        for file in root.glob(f"robots/*/{extends}"):
-            try:
-                folder = data_folder("examples") / file.parent.name
-            except FileNotFoundError:
-                return None
-            return folder if (folder / PLANT).is_dir() and (folder / BINDINGS).is_file() else None
-    return None
+    file = find_tcf(extends, roots[-1], roots)
+    if file is None:
+        return None
+    try:
+        folder = data_folder("examples") / file.parent.name
+    except FileNotFoundError:
+        return None
+    return folder if (folder / PLANT).is_dir() and (folder / BINDINGS).is_file() else None
 
 
 def plant_files(folder: Path) -> dict[str, bytes]:

@@ -19,7 +19,7 @@ from epg.generator.check.merge import merge_chain
 from epg.generator.data import data_folder, targets_roots
 from epg.generator.diagnostics import Diagnostics
 from epg.generator.documents.schema import validate
-from epg.generator.documents.tcf import load_tcf_chain, predefined_tcf_names, settings_node
+from epg.generator.documents.tcf import load_tcf_chain, settings_node
 from epg.generator.documents.yaml_file import parse_yaml
 from epg.generator.source import Span
 from tests.catalog.everything import read_everything
@@ -182,7 +182,7 @@ WIRINGS = ("rpi_pico", "nucleo_h743zi", "nucleo_h743zi_stlink")
 WITHOUT_TARGET = (*ROBOTS, *(f"{wiring}_{robot}" for wiring in WIRINGS for robot in ROBOTS))
 
 
-@pytest.mark.parametrize("name", predefined_tcf_names(targets_roots()))
+@pytest.mark.parametrize("name", builtin()[0].configuration_names())
 def test_predefined_configurations(name: str) -> None:
     """Configurations with a target are valid; robots and wirings are valid once the missing keys are set."""
     catalog, problems = builtin()

@@ -29,6 +29,7 @@ from epg.generator.correction import and_then, correction
 from epg.generator.diagnostics import Diagnostics, did_you_mean, question
 from epg.generator.documents.items import texts_of
 from epg.generator.documents.merge import merge, without_nulls
+from epg.generator.documents.tcf import predefined_tcf_names
 from epg.generator.documents.yaml_file import load_yaml
 from epg.generator.source import Span, YamlNode
 
@@ -82,6 +83,15 @@ class Catalog:
                 if soc and self._on(platform, soc) is not None:
                     found.add(f"{board_name}_{platform_name}")
         return sorted(found)
+
+    def configuration_names(self) -> list[str]:
+        """The names of the predefined ``.tcf`` files: those in folders of robots, and the composed ones.
+
+        A robot is composed with each target that has pins or simulates it.  The others need settings of the user.
+        """
+        targets = [target for name in self.target_names() if (target := self.find_target(name)) is not None]
+        complete = [target.name for target in targets if target.has_pins or target.platform.simulates_plant]
+        return predefined_tcf_names(complete, self.roots)
 
     def find_kind(self, name: str) -> Kind | None:
         """The kind ``name``, or None if it does not exist or has mistakes."""

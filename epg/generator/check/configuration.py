@@ -28,7 +28,7 @@ from epg.generator.diagnostics import Diagnostics, Note, did_you_mean
 from epg.generator.documents.accept import accepts
 from epg.generator.documents.items import flag_of, integer_of, map_of
 from epg.generator.documents.schema import extended_from, load_schema, validate
-from epg.generator.documents.tcf import TcfFile
+from epg.generator.documents.tcf import TcfFile, files_of
 from epg.generator.documents.yaml_file import newer_version
 from epg.generator.source import Span, YamlNode
 
@@ -144,7 +144,7 @@ def check_configuration(
         control=control,
         communication=communication,
         components=components,
-        files=(*(file.path for file in chain), *_message_files(components)),
+        files=(*files_of(chain), *_message_files(components)),
         absent=tuple(path for file in chain for path in file.absent),
         root=root,
     )

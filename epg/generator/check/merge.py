@@ -20,8 +20,11 @@ def merge_chain(chain: Sequence[TcfFile]) -> YamlNode:
     """The merged tree of a chain (the extending file first), without ``extends`` and without ``null``."""
     merged: YamlNode | None = None
     origins: list[Span] = [file.extended_by for file in chain if file.extended_by is not None]
+    composed = {str(file.path) for file in chain if file.is_composed}  # users cannot look into these
     for index in range(len(chain) - 1, -1, -1):
-        node = _with_origins(chain[index].node, tuple(reversed(origins[:index])))
+        node = _with_origins(
+            chain[index].node, tuple(span for span in reversed(origins[:index]) if span.file not in composed)
+        )
         node = _without(node, "extends")
         merged = node if merged is None else merge(merged, node)
     assert merged is not None

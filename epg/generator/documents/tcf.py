@@ -14,6 +14,7 @@ from pathlib import Path
 
 from epg.generator.dataclass import dataclass
 from epg.generator.diagnostics import Diagnostics, nearest, question
+from epg.generator.documents.composed_tcf import FoundTcf, composed_names, composed_tcf, possible_targets
 from epg.generator.documents.text_file import NO_DRAFTS, Drafts, is_file, is_folder, read_text
 from epg.generator.documents.yaml_file import MAX_DEPTH, parse_yaml
 from epg.generator.source import Span, YamlNode
@@ -29,7 +30,7 @@ class TcfFile:
     """One file of a chain.
 
     ``extended_by`` is the position of the ``extends`` that names it.  ``absent`` are the paths of files that do not
-    exist, but that would be read instead of this one if they did.
+    exist, but that would be read instead of this one if they did.  The path of a composed configuration is one of them.
     """
 
     path: Path
@@ -37,16 +38,33 @@ class TcfFile:
     extended_by: Span | None = None
     absent: tuple[Path, ...] = ()
 
+    @property
+    def is_composed(self) -> bool:
+        """True if there is no such file."""
+        return self.path in self.absent
 
-def find_tcf(name: str, beside: Path, roots: Iterable[Path]) -> Path | None:
+
+def find_tcf(name: str, beside: Path, roots: Sequence[Path]) -> Path | None:
     """The file ``name``, with or without ``.tcf``; None if it does not exist.
 
-    ``name`` is a path relative to ``beside``, or the name of a file in a folder ``robots/*`` of ``roots``.
+    ``name`` is a path relative to ``beside``, or the name of a file in a folder ``robots/*`` of ``roots``, or of a
+    composed configuration: the path is then where its file would be.
     """
+    found = _find(name, beside, roots)
+    return None if found is None else found.path
+
+
+def files_of(chain: Iterable[TcfFile]) -> list[Path]:
+    """The files that were read for a chain."""
+    return [file.path for file in chain if not file.is_composed]
+
+
+def _find(name: str, beside: Path, roots: Sequence[Path]) -> FoundTcf | None:
+    """The file ``name``, or the configuration that is composed if there is no such file."""
     names = _file_names(name)
     for path in _candidates(name, beside):
         if is_file(path):
-            return path
+            return FoundTcf(path)
     if any(separator in name for separator in "/\\"):
         return None
     for root in roots:
@@ -54,8 +72,8 @@ def find_tcf(name: str, beside: Path, roots: Iterable[Path]) -> Path | None:
         for candidate in names:
             files = [robot / candidate for robot in robots if is_file(robot / candidate)]
             if files:
-                return files[0]
-    return None
+                return FoundTcf(files[0])
+    return composed_tcf(name, roots)
 
 
 def _file_names(name: str) -> list[str]:
@@ -66,9 +84,10 @@ def _candidates(name: str, beside: Path) -> list[Path]:
     return [beside / candidate for candidate in _file_names(name)]
 
 
-def predefined_tcf_names(roots: Iterable[Path]) -> list[str]:
-    """The names of all ``.tcf`` files in the folders ``robots/*`` of ``roots``."""
-    return sorted({path.name for root in roots for path in (root / "robots").glob("*/*.tcf")})
+def predefined_tcf_names(targets: Iterable[str], roots: Sequence[Path]) -> list[str]:
+    """The names of all ``.tcf`` files in the folders ``robots/*`` of ``roots``, and those composed for ``targets``."""
+    files = {path.name for root in roots for path in (root / "robots").glob("*/*.tcf")}
+    return sorted(files | composed_names(targets, roots))
 
 
 def load_tcf_chain(
@@ -88,30 +107,31 @@ def load_tcf_chain(
     beside = beside or Path()
     while True:
         read = {file.path.resolve() for file in chain}  # A file must not extend itself.
-        path = find_tcf(name, beside, roots)
-        if path is None:
-            hint = _missing_hint(name, beside, read, predefined_tcf_names(roots))
+        found = _find(name, beside, roots)
+        if found is not None and found.path.resolve() in read:
+            # A user's file may extend a file of EPG that has the same name: search there only.
+            found = _find(name, beside / "nowhere", roots) or found
+        if found is None:
+            hint = _missing_hint(name, beside, read, predefined_tcf_names(possible_targets(roots), roots))
             diagnostics.error("tcf-not-found", wanted_by or Span(name), f"there is no file '{name}'", hint=hint)
             return ()
-        if path.resolve() in read:  # A user's file may extend a file of EPG that has the same name: search there only.
-            path = find_tcf(name, beside / "nowhere", roots) or path
-        if path.resolve() in read:
+        if found.path.resolve() in read:
             assert wanted_by is not None
-            message = f"'{path.name}' extends itself"
+            message = f"'{found.path.name}' extends itself"
             diagnostics.error("extends-loop", wanted_by, message, hint="remove this 'extends'")
             return ()
         if len(chain) == _MAX_CHAIN:
             assert wanted_by is not None
             diagnostics.error("extends-depth", wanted_by, f"this chain of 'extends' has more than {_MAX_CHAIN} files")
             return ()
-        node = _load(path, diagnostics, wanted_by, drafts)
+        node = _load(found, diagnostics, wanted_by, drafts)
         if node is None:
             return ()
-        chain.append(TcfFile(path, node, wanted_by, _absent(name, beside, path)))
+        chain.append(TcfFile(found.path, node, wanted_by, (*_absent(name, beside, found.path), *found.absent)))
         extends = node.get("extends")
         if extends is None or not isinstance(extends.value, str):
             return tuple(chain)
-        name, beside, wanted_by = extends.value, path.parent, extends.span
+        name, beside, wanted_by = extends.value, found.path.parent, extends.span
 
 
 def _absent(name: str, beside: Path, found: Path) -> tuple[Path, ...]:
@@ -139,8 +159,9 @@ def _missing_hint(name: str, beside: Path, read: Collection[Path], predefined: I
     return f"{has}; 'epg targets' lists the files of EPG"
 
 
-def _load(path: Path, diagnostics: Diagnostics, wanted_by: Span | None, drafts: Drafts) -> YamlNode | None:
-    text = read_text(path, diagnostics, wanted_by, drafts)
+def _load(found: FoundTcf, diagnostics: Diagnostics, wanted_by: Span | None, drafts: Drafts) -> YamlNode | None:
+    path = found.path
+    text = read_text(path, diagnostics, wanted_by, drafts) if found.text is None else found.text
     if text is None:
         return None
     if _20SIM_4C.match(text):

@@ -8,6 +8,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import field
 from pathlib import Path
 from typing import ClassVar
 
@@ -63,6 +64,7 @@ class ProjectPlan:
     robot.  ``agent`` is the agent that makes the firmware a ROS 2 node, or empty.  ``axes`` are the axes that its
     scenario moves.
 
+    ``pins`` are free pins for the components of ``extends`` that have none on this board.
     ``actuators`` and ``carriers`` are components of ``extends``: those that move something, and those that carry the
     bytes of a middleware.
 
@@ -84,6 +86,7 @@ class ProjectPlan:
     actuators: Sequence[str]
     carriers: Sequence[str]
     versions: Mapping[str, str]
+    pins: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     plant: bool = False
     axes: Sequence[MovedAxis] = ()
 

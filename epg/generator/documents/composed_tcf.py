@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Target configurations that are composed of a target, a robot and the robot's wiring, without a file for each of them.
+
+``<target>_<robot>.tcf`` names the target, and extends the first of these files in the folders of the robot:
+
+1. ``<board>_<platform>_<robot>.tcf``, then ``<board>_<robot>.tcf``: the wiring.  First those of the target's board,
+   then those of each board that this board extends.
+2. ``<robot>.tcf``: the robot.  A board without a wiring gets its pins in the file of the user.
+
+A file with the name of a composed configuration is read instead of it.
+
+>>> # composed_tcf("rpi_pico2_w_zephyr_jiwy.tcf", roots).text
+'version: 1\\nextends: rpi_pico_jiwy.tcf\\ntarget: rpi_pico2_w_zephyr\\n'
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+
+from epg.generator.dataclass import dataclass
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.text_file import is_file
+from epg.generator.documents.yaml_file import load_yaml
+
+
+@dataclass(frozen=True)
+class FoundTcf:
+    """The file of a configuration; or its ``text`` if it is composed, and the ``path`` at which its file would be.
+
+    A file at one of ``absent`` would change a composed one.  None of them exists; ``path`` is one of them.
+    """
+
+    path: Path
+    text: str | None = None
+    absent: tuple[Path, ...] = ()
+
+
+def composed_tcf(name: str, roots: Sequence[Path]) -> FoundTcf | None:
+    """The configuration ``name``, with or without ``.tcf``; None if it names no board, platform and robot."""
+    stem = name.removesuffix(".tcf")
+    for robot in robot_names(roots):
+        target = stem.removesuffix(f"_{robot}")
+        for board, platform in _splits(target, roots) if target != stem else ():
+            folders = [root / "robots" / robot for root in roots]
+            absent = [folder / f"{stem}.tcf" for folder in folders]
+            for file in _extended(board, platform, robot, roots):
+                for folder in folders:
+                    if is_file(folder / file):
+                        text = f"version: 1\nextends: {file}\ntarget: {target}\n"
+                        return FoundTcf(folder / f"{stem}.tcf", text, tuple(absent))
+                    absent.append(folder / file)
+    return None
+
+
+def robot_names(roots: Iterable[Path]) -> list[str]:
+    """The robots: each has a file of its name in its folder."""
+    folders = {folder for root in roots for folder in (root / "robots").glob("*/")}
+    return sorted({folder.name for folder in folders if is_file(folder / f"{folder.name}.tcf")})
+
+
+def composed_names(targets: Iterable[str], roots: Sequence[Path]) -> set[str]:
+    """The names of the composed configurations of ``targets``."""
+    robots = robot_names(roots)
+    return {f"{target}_{robot}.tcf" for target in targets for robot in robots}
+
+
+def possible_targets(roots: Sequence[Path]) -> list[str]:
+    """All platforms, and each one with each board, also if it does not support the board's chip: to find a mistype."""
+    boards, platforms = _names("board", "boards", roots), _names("platform", "platforms", roots)
+    return [*platforms, *(f"{board}_{platform}" for board in boards for platform in platforms)]
+
+
+def _splits(target: str, roots: Sequence[Path]) -> Iterator[tuple[str, str]]:
+    """The pairs of board and platform whose names together are ``target``; the board of a platform alone is empty."""
+    for platform in _names("platform", "platforms", roots):
+        board = target.removesuffix(platform).removesuffix("_")
+        if target == platform or (target == f"{board}_{platform}" and _board_file(board, roots)):
+            yield board, platform
+
+
+def _extended(board: str, platform: str, robot: str, roots: Sequence[Path]) -> Iterator[str]:
+    """The names of the files that a composed configuration can extend, the best one first."""
+    read: set[str] = set()
+    own = f"{board}_{platform}_{robot}.tcf"
+    while board and board not in read:
+        read.add(board)
+        yield from (file for file in (f"{board}_{platform}_{robot}.tcf", f"{board}_{robot}.tcf") if file != own)
+        path = _board_file(board, roots)
+        node = load_yaml(path, Diagnostics()) if path is not None else None
+        extends = node.get("extends") if node is not None else None
+        board = str(extends.value) if extends is not None else ""
+    yield f"{robot}.tcf"
+
+
+def _board_file(board: str, roots: Iterable[Path]) -> Path | None:
+    return next((path for root in roots if is_file(path := root / "boards" / board / "board.yaml")), None)
+
+
+def _names(category: str, folder: str, roots: Iterable[Path]) -> list[str]:
+    return sorted({path.parent.name for root in roots for path in (root / folder).glob(f"*/{category}.yaml")})

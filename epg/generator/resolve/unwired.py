@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reports components whose pins nobody has written.
+
+A wiring is written down and never invented: a program whose pins change with the version of EPG, or when a component is
+added, would drive the wrong wires.  Therefore free pins are only proposed, as an edit of the user's file.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from epg.generator.check.configuration import Component, Configuration
+from epg.generator.correction import KeyValue
+from epg.generator.data import is_own_target_file
+from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.schema import extended_from
+from epg.generator.resolve.first_fit import first_fit, signals_of
+
+
+def report_unwired(configuration: Configuration, diagnostics: Diagnostics) -> None:
+    """Reports each component without all of its pins, with free pins that fit together."""
+    written = signals_of(configuration)
+    found = first_fit(configuration, configuration.control.period)
+    for component in configuration.components.values():
+        own = {name: pin for (owner, name), pin in written.items() if owner == component.name}
+        missing = [name for name, pin in own.items() if not pin]
+        if missing:
+            node = component.node.get("pins") or component.node
+            message = f"'{component.name}' has no pin{'s' if missing[1:] else ''} for {', '.join(map(repr, missing))}"
+            hint = "no free pins fit: move or remove a component"
+            if found:
+                pins = {name: found[component.name, name] for name in missing}
+                if any(pin.isdigit() for pin in own.values()):  # in the form of those that the user has written
+                    pins = {name: configuration.target.board.pin_name(pin) for name, pin in pins.items()}
+                hint = _hint(component, own | pins, configuration)
+            notes = extended_from(component.node)
+            diagnostics.error("unwired", node.span, message, hint=hint, notes=notes, about="pins")
+
+
+def _hint(component: Component, pins: dict[str, str], configuration: Configuration) -> str:
+    text = ", ".join(f"{name}: {pin}" for name, pin in pins.items())
+    sentence = f"write 'pins: {{{text}}}' in '{component.name}', or the pins to which it is wired"
+    if is_own_target_file(configuration.tcf):
+        return f"{sentence}, in a .tcf of your own that extends {Path(configuration.tcf).name}"
+    path = ("components", component.name, "pins")
+    return KeyValue(
+        sentence, configuration.tcf, path, {name: int(pin) if pin.isdigit() else pin for name, pin in pins.items()}
+    )
