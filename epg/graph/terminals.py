@@ -14,10 +14,12 @@ from epg.generator.resolve.allocation import Assignment
 from epg.generator.resolve.claims import ClaimKey
 from epg.graph.svg import WIRES
 
+SIDES = ("left", "right", "top", "bottom")
+
 
 @dataclass(frozen=True)
 class Terminal:
-    """A connection of a component to ``contact``.  ``place`` is its line of the grid, from the top.
+    """A connection of a component to ``contact``.  ``place`` is its line of the grid, from the top or from the left.
 
     ``on_board`` is True if the board itself has this wire.
     """
@@ -25,7 +27,7 @@ class Terminal:
     component: str
     signal: str
     contact: Contact
-    place: int
+    place: float
     resource: str
     colour: int
     on_board: bool = False
@@ -34,11 +36,11 @@ class Terminal:
 def terminals(
     target: Target, components: Mapping[str, Component], assignments: Mapping[ClaimKey, Assignment]
 ) -> dict[str, list[Terminal]]:
-    """The terminals on each side of the board, "left" and "right", from the top down."""
+    """The terminals on each side of the board, from the top down or from the left to the right."""
     layout = target.board.layout
     assert layout is not None
-    places = {side: places_of(layout, side) for side in ("left", "right")}
-    sides: dict[str, list[Terminal]] = {"left": [], "right": []}
+    places = {side: places_of(layout, side) for side in SIDES}
+    sides: dict[str, list[Terminal]] = {side: [] for side in SIDES}
     with_pins = [name for name, component in components.items() if component.kind.pins]
     for name in with_pins:
         for signal, pin, assignment in _signals(target, components[name].kind, _claims(name, assignments)):
@@ -98,9 +100,9 @@ def wire_texts(kind: Kind, claims: Mapping[str, Assignment], target: Target) -> 
     return [f"{signal} {target.board.pin_title(pin)}" for signal, pin, _ in _signals(target, kind, claims)]
 
 
-def places_of(layout: Layout, side: str) -> dict[int, Contact]:
+def places_of(layout: Layout, side: str) -> dict[float, Contact]:
     """The contacts of a side by their lines of the grid.  Between two rows of contacts, there is space for a title."""
-    result: dict[int, Contact] = {}
+    result: dict[float, Contact] = {}
     line = 0
     for row in layout.rows:
         if row.side == side:

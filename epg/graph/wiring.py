@@ -21,6 +21,7 @@ from epg.generator.resolve.allocation import Assignment
 from epg.generator.resolve.claims import ClaimKey
 from epg.generator.resolve.first_fit import ClaimSignal
 from epg.generator.resolve.pin_options import PinOption
+from epg.graph.edges import COLUMN, Detour, Edge, detours_of, edge_room, highest, moved
 from epg.graph.svg import Picture, width
 from epg.graph.terminals import Terminal, elsewhere, places_of, printed_names, terminals
 
@@ -49,12 +50,16 @@ class PinChoice:
 class _Frame:
     """The measures of a picture: from the middle of the board to its contacts, and between two of them, in pixels.
 
-    ``lines`` is the number of lines of the grid.
+    ``lines`` is the number of lines of the grid.  The upper and the lower edge of the board are at ``top`` and
+    ``bottom``; ``wide`` is the distance of two contacts there.
     """
 
     inside: float
     pitch: float
     lines: int
+    top: float
+    bottom: float
+    wide: float
 
     @property
     def gap(self) -> int:
@@ -71,10 +76,22 @@ class _Side:
     frame: _Frame
     name: str
     for_page: bool
+    detours: Mapping[float, Detour]
 
     @property
     def sign(self) -> int:
         return -1 if self.name == "left" else 1
+
+    @property
+    def places(self) -> dict[float, Contact]:
+        """The contacts that its wires can use, by their lines of the grid: from the top down, those at edges, too."""
+        detours = {place: detour.contact for place, detour in self.detours.items()}
+        return dict(sorted({**places_of(self.layout, self.name), **detours}.items(), key=lambda item: item[0]))
+
+    def place(self, contact: Contact, line: float) -> tuple[float, float]:
+        """The middle of the contact at a line of the grid.  Those of a pair are side by side between two lines."""
+        x = self.frame.inside - (COLUMN if contact.inner else 0)
+        return self.sign * x, (line + contact.pair / 2) * self.frame.pitch
 
     @property
     def inward(self) -> str:
@@ -96,7 +113,7 @@ class _Pad:
 
     target: Target
     layout: Layout
-    place: int
+    place: float
     contact: Contact
     users: Sequence[Terminal]
     option: PinOption | None
@@ -189,15 +206,23 @@ def draw_wiring(
     layout = board.layout
     assert layout is not None
     sides = terminals(target, components, assignments)
-    soldered = {side: [terminal for terminal in contents if not terminal.on_board] for side, contents in sides.items()}
+    frame = _frame(target, layout)
+    edges = [Edge(each, places_of(layout, each), frame.wide, getattr(frame, each)) for each in ("top", "bottom")]
+    edges = [edge for edge in edges if edge.contacts]
+    detours = detours_of(layout, edges, sides)
+    soldered = {side: moved(side, ways, sides, frame.pitch) for side, ways in detours.items()}
     others = elsewhere(target, components, assignments)
     picture = Picture(f"{title}: wiring of {board.summary}", _description(target, layout, soldered, others))
-    frame = _frame(target, layout, sides)
-    _board(picture, layout, frame, board.summary, title)
+    _board(picture, layout, frame, board.summary, title, highest(detours))
     seen: set[str] = set()
-    for name, contents in sides.items():
-        side = _Side(picture, layout, frame, name, for_page)
-        pads = _pads(target, layout, name, contents, choice, wrong)
+    for edge in edges:
+        pads = _pads(target, layout, edge.name, sides[edge.name], choice, wrong)
+        seen.update(pad.state for pad in pads)
+        _edge_contacts(picture, layout, edge, pads, for_page)
+    for name in soldered:
+        ways = {detour.y / frame.pitch: detour for detour in detours[name]}
+        side = _Side(picture, layout, frame, name, for_page, ways)
+        pads = _pads(target, layout, name, sides[name], choice, wrong)
         seen.update(pad.state for pad in pads)
         _contacts(side, pads)
         _row_titles(side)
@@ -209,24 +234,30 @@ def draw_wiring(
     return picture.render()
 
 
-def _frame(target: Target, layout: Layout, sides: Collection[str]) -> _Frame:
+def _frame(target: Target, layout: Layout) -> _Frame:
     """The measures: the names of all contacts have room on the board."""
-    lines = 1 + max((max(places_of(layout, side), default=0) for side in sides), default=0)
+    lines = 1 + int(max(max(places_of(layout, side), default=0) for side in ("left", "right")))
+    pitch = _PITCH if lines <= _MANY else _NARROW_PITCH
     names = [_contact_name(target, contact) for row in layout.rows for contact in row.contacts]
-    inside = max(_INSIDE, 40 + max(width(name, 11) for name in names))
-    return _Frame(inside, _PITCH if lines <= _MANY else _NARROW_PITCH, lines)
+    column = max(COLUMN * contact.inner for row in layout.rows for contact in row.contacts)
+    wide = 8 + max(width(name, 11) for name in names)
+    longest = max(len(places_of(layout, edge)) for edge in ("top", "bottom"))
+    inside = max(_INSIDE, 32 + column + wide, longest * wide / 2 + 10)
+    top, bottom = (edge_room(layout, edge) for edge in ("top", "bottom"))
+    return _Frame(inside, pitch, lines, -_HEAD - top, lines * pitch + 11 + bottom, wide)
 
 
-def _board(picture: Picture, layout: Layout, frame: _Frame, summary: str, title: str) -> None:
-    """Draws the board without its contacts, and the titles above it."""
-    picture.box(-frame.inside, -_HEAD, 2 * frame.inside, frame.lines * frame.pitch + _HEAD + 11, "board", round=8)
+def _board(picture: Picture, layout: Layout, frame: _Frame, summary: str, title: str, lanes: float) -> None:
+    """Draws the board without its contacts, and the titles above it and above the ``lanes`` of wires."""
+    picture.box(-frame.inside, frame.top, 2 * frame.inside, frame.bottom - frame.top, "board", round=8)
     if layout.top:
         wide = width(layout.top, 12) + 20
         picture.box(-wide / 2, -_HEAD - 8, wide, 26, "box")
         picture.text(0, -_HEAD + 9, layout.top, "middle")
-    picture.text(0, -_HEAD - 38, title, "middle", 15, "bold")
+    above = min(frame.top, lanes)
+    picture.text(0, above - 38, title, "middle", 15, "bold")
     told = summary if layout.to_scale else f"{summary}, not to scale"
-    picture.text(0, -_HEAD - 18, told, "middle", 12, "bold")
+    picture.text(0, above - 18, told, "middle", 12, "bold")
 
 
 def _contact_name(target: Target, contact: Contact) -> str:
@@ -246,7 +277,7 @@ def _pads(
 ) -> list[_Pad]:
     """The contacts of a side.  ``found`` are its terminals."""
     options = {option.pin: option for option in choice.options} if choice is not None else {}
-    users: dict[int, list[Terminal]] = {}
+    users: dict[float, list[Terminal]] = {}
     for terminal in found:
         users.setdefault(terminal.place, []).append(terminal)
     mistaken = {terminal.place for terminal in found if (terminal.component, terminal.signal) in wrong}
@@ -260,17 +291,41 @@ def _contacts(side: _Side, pads: Sequence[_Pad]) -> None:
     """Draws the contacts of a side, with their numbers and names."""
     picture, frame, sign = side.picture, side.frame, side.sign
     for pad in pads:
-        x, y = sign * frame.inside, pad.place * frame.pitch
+        x, y = side.place(pad.contact, pad.place)
         _contact(picture, x, y, pad.state, pad.title, pad.users[0].colour if pad.users else 0)
         if pad.option is not None and pad.option.state == "current":
             picture.box(x - 9, y - 7, 18, 14, "chosen", round=3)
+        x, y = sign * (frame.inside - (COLUMN if pad.contact.pair else 0)), pad.place * frame.pitch
         if pad.contact.number is not None:
             picture.text(x - sign * 12, y + 4, str(pad.contact.number), side.inward, _SMALL, "faint")
         picture.text(x - sign * 34, y + 4, _contact_name(pad.target, pad.contact), side.inward, 11, pad.weight)
         if side.for_page and pad.contact.pin:
-            left = x - 10 if sign < 0 else 4.0
+            left = -frame.inside - 10 if sign < 0 else 4.0
             data = {"pin": pad.target.board.pin_title(pad.contact.pin)}
             picture.hit(left, y - frame.pitch / 2, frame.inside + 6, frame.pitch, data, pad.title)
+
+
+def _edge_contacts(picture: Picture, layout: Layout, edge: Edge, pads: Sequence[_Pad], for_page: bool) -> None:
+    """Draws the contacts of an edge, with their numbers and names."""
+    names = edge.y - edge.sign * (edge.depth + 16) + 4
+    for pad in pads:
+        (x, y), own = edge.pad(pad.place), edge.x(pad.place)
+        _contact(picture, x, y, pad.state, pad.title, pad.users[0].colour if pad.users else 0)
+        if pad.option is not None and pad.option.state == "current":
+            picture.box(x - 9, y - 7, 18, 14, "chosen", round=3)
+        if pad.contact.number is not None:
+            picture.text(own, names, str(pad.contact.number), "middle", _SMALL, "faint")
+        picture.text(own, names - edge.sign * 13, _contact_name(pad.target, pad.contact), "middle", 11, pad.weight)
+        if for_page and pad.contact.pin:
+            data = {"pin": pad.target.board.pin_title(pad.contact.pin)}
+            top = edge.y - 8 if edge.sign < 0 else names - 26
+            picture.hit(own - edge.wide / 2, top, edge.wide, edge.depth + 42, data, pad.title)
+    first = 0
+    for row in layout.rows:
+        if row.side == edge.name:
+            middle = edge.x(first + (len(row.contacts) - 1) / 2)
+            picture.text(middle, names - edge.sign * 27, row.title, "middle", 11, "bold")
+            first += len(row.contacts) + 2
 
 
 def _row_titles(side: _Side) -> None:
@@ -344,15 +399,15 @@ def _soldered(side: _Side, parts: Sequence[_Part]) -> None:
     if not parts:
         return
     frame = side.frame
-    told: dict[int, list[str]] = {}
+    told: dict[float, list[str]] = {}
     for terminal in (each for part in parts for each in part.terminals):
         told.setdefault(terminal.place, []).append(f"{terminal.component} {terminal.signal}")
     labels = {place: ", ".join(texts) for place, texts in told.items()}
     columns = _columns(frame, parts, max(width(label, _SMALL) for label in labels.values()))
-    places = places_of(side.layout, side.name)
-    grounds = _grounds([p for p, contact in places.items() if side.layout.role(contact) == "ground"], parts)
+    grounds = _grounds([p for p, contact in side.places.items() if side.layout.role(contact) == "ground"], parts)
+    last = int(max(places_of(side.layout, side.name), default=frame.lines - 1))
     wires: list[_Wire] = []
-    for part, first, ground in zip(parts, _lines(parts, max(places), frame), grounds, strict=True):
+    for part, first, ground in zip(parts, _lines(parts, last, frame), grounds, strict=True):
         _component(side, part, first, columns)
         wires += _wires_of(part, first, ground, frame.pitch, labels)
     _wires(side, columns, wires)
@@ -393,7 +448,7 @@ def _component(side: _Side, part: _Part, first: int, columns: _Columns) -> None:
         picture.text(tx, top + high - 9, _RESISTOR, anchor, _SMALL, "faint")
 
 
-def _wires_of(part: _Part, first: int, ground: int | None, pitch: float, labels: dict[int, str]) -> list[_Wire]:
+def _wires_of(part: _Part, first: int, ground: float | None, pitch: float, labels: dict[float, str]) -> list[_Wire]:
     """The wires of a component.  The first one of a contact takes its label, which is that of all, from ``labels``."""
     wires = []
     for index, terminal in enumerate(part.terminals):
@@ -422,13 +477,13 @@ def _lines(parts: Sequence[_Part], last: int, frame: _Frame) -> list[int]:
     return [first - below // 2 for first in firsts]
 
 
-def _grounds(grounds: Sequence[int], parts: Sequence[_Part]) -> list[int | None]:
+def _grounds(grounds: Sequence[float], parts: Sequence[_Part]) -> list[float | None]:
     """The ground contact of each component, as a line of the grid; None if the side has none.
 
     If there are enough ground contacts, each component gets a different one, from the top down.  If not, each component
     gets the nearest one.
     """
-    result: list[int | None] = []
+    result: list[float | None] = []
     own = len(grounds) >= len(parts)
     start = 0
     for index, part in enumerate(parts):
@@ -447,7 +502,7 @@ class _Wire:
     ``signal`` is empty for the ground.
     """
 
-    place: int
+    place: float
     y: float
     label: str
     title: str
@@ -462,6 +517,7 @@ def _wires(side: _Side, columns: _Columns, wires: Sequence[_Wire]) -> None:
     topmost contact first.
     """
     inside, pitch, sign = side.frame.inside, side.frame.pitch, side.sign
+    contacts = side.places
     down = sorted((wire for wire in wires if wire.y > wire.place * pitch), key=lambda wire: (-wire.place, -wire.y))
     up = sorted((wire for wire in wires if wire.y <= wire.place * pitch), key=lambda wire: (wire.place, wire.y))
     size, above = (_SMALL, 5) if pitch == _PITCH else (9.5, 4)
@@ -469,6 +525,13 @@ def _wires(side: _Side, columns: _Columns, wires: Sequence[_Wire]) -> None:
         second = wire.signal and not wire.label  # at a contact that another wire uses, too
         x, y = sign * (columns.near + lane * _LANE), wire.place * pitch + (4 if second else 0)
         points = [(sign * (inside + 5), y), (x, y), (x, wire.y), (sign * columns.edge, wire.y)]
+        contact = contacts[wire.place]
+        if wire.place in side.detours:
+            points[:1] = side.detours[wire.place].points(y)
+        elif contact.inner:  # the wire passes the other contact of the pair
+            points[0] = side.place(contact, wire.place)[0], y
+        elif contact.pair:
+            points[:1] = [(sign * (inside + 5), side.place(contact, wire.place)[1]), (sign * (inside + 10), y)]
         side.picture.line(points, wire.style, wire.title)
         style = wire.style.replace("w", "t")
         side.picture.text(sign * (inside + 12), y - above, wire.label, side.outward, size, style)

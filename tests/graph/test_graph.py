@@ -188,6 +188,54 @@ def test_a_board_without_a_layout_gets_its_pins_in_rows(
     assert svg.line("led value").points[0][0] > 0
 
 
+FOUR_SIDES = """\
+api: 1
+board: four_sides
+summary: a board with contacts on all sides
+soc: rp2040
+pins: [0-22, 26-28]
+layout:
+  top: USB
+  rows:
+    - {side: left, first: 1, columns: 2, contacts: [0, 1, 2, GND, 3, 4]}
+    - {side: right, first: 7, columns: 2, contacts: [5, 6, 7, 3V3, GND, 8]}
+    - {side: top, title: J1, first: 1, columns: 2, contacts: [9, 10, 11, GND, 12, 13, 14, GND, 15, 16]}
+    - {side: bottom, title: J2, first: 1, contacts: [17, 18, 19, GND, 20, 21, 22, 26]}
+  supplies:
+    GND: {role: ground, title: ground}
+    3V3: {role: supply, title: output, feeds_components: true}
+"""
+
+
+def test_contacts_on_four_sides_and_side_by_side(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    board = tmp_path / "boards/four_sides/board.yaml"
+    board.parent.mkdir(parents=True)
+    board.write_text(FOUR_SIDES, encoding="utf-8")
+    robot = tmp_path / "robot.tcf"
+    robot.write_text(
+        "version: 1\nextends: four_sides_bare_metal_jiwy.tcf\ncomponents:\n"
+        "  encoder_pan: {pins: {a: 10, b: 11}}\n  encoder_tilt: {pins: {a: 18, b: 19}}\n"
+        "  pwm_pan: {pins: {value: 2, direction_a: 14, direction_b: 15}}\n"
+        "  pwm_tilt: {pins: {value: 20, direction_a: 5, direction_b: 6}}\n",
+        encoding="utf-8",
+    )
+    monkeypatch.setenv("EPG_TARGETS_PATH", str(tmp_path))
+    svg = Svg(draw(capsys, str(robot), "--what", "wiring"))
+    assert_readable(svg)
+    wires = [line for line in svg.lines if line.title]
+    assert len([wire for wire in wires if wire.style != "earth"]) == 10
+    assert_lines_apart(wires)
+    begin = {each: svg.line(each).points[0] for each in ("pwm_tilt direction_a", "pwm_tilt direction_b")}
+    (inner, y), (outer, other) = begin.values()
+    assert (0 < inner < outer, abs(y - other) < 12) == (True, True)  # GP5 and GP6 are side by side
+    top, bottom = svg.line("encoder_pan a").points, svg.line("encoder_tilt a").points
+    assert max(y for _, y in top[-4:-2]) < top[0][1] < 0 < bottom[0][1] < max(y for _, y in bottom)
+    assert top[0][0] < 0 < svg.line("pwm_tilt value").points[0][0]  # each goes to the nearer side
+    assert {"J1", "J2", "GP9" if "GP9" in svg.words else "9"} <= set(svg.words)
+
+
 def test_the_contacts_show_supplies_and_the_names_on_the_board(capsys: pytest.CaptureFixture[str]) -> None:
     svg = Svg(draw(capsys, "rpi_pico2_freertos_jiwy", "--what", "wiring"))
     assert "VSYS (39): input: 1.8 V to 5.5 V for the board; output: the voltage that supplies the board" in svg.words

@@ -10,7 +10,7 @@ from collections.abc import Collection, Mapping
 from types import MappingProxyType
 
 from epg.generator.dataclass import dataclass
-from epg.generator.documents.items import flag_of, map_of, text_of, texts_of, values_of
+from epg.generator.documents.items import flag_of, integer_of, map_of, text_of, texts_of, values_of
 from epg.generator.source import YamlNode
 
 _UNKNOWN = "The places of the contacts are not known: see the manual of the board."
@@ -21,13 +21,16 @@ class Contact:
     """One contact of a row.  ``pin`` is the chip's name of the pin; empty for ground, supplies and other contacts.
 
     The pin can be one that is reserved, or wired to a device on the board, too.  ``number`` is None if it is not known.
-    ``row`` is the title of its row.
+    ``row`` is the title of its row.  ``pair`` is 1 for the first contact of a pair that is side by side, -1 for the
+    second, 0 for all others; the ``inner`` one of a pair is farther from the edge of the board.
     """
 
     number: int | None
     name: str
     pin: str
     row: str = ""
+    pair: int = 0
+    inner: bool = False
 
     @property
     def title(self) -> str:
@@ -37,7 +40,7 @@ class Contact:
 
 @dataclass(frozen=True)
 class ContactRow:
-    """Contacts along the ``side`` ("left" or "right") of a board, from the top down."""
+    """Contacts along the ``side`` of a board: "left" or "right" from the top down, "top" or "bottom" from the left."""
 
     side: str
     title: str
@@ -105,11 +108,14 @@ def _made_of(pins: tuple[str, ...]) -> Layout:
 def _row(node: YamlNode, pins: Collection[str]) -> ContactRow:
     first, step = _whole(node["first"]), _whole(node["step"]) if "step" in node else 1
     names = [str(child.value) for child in node["contacts"].elements()]
-    title = text_of(node, "title")
-    contacts = tuple(
-        Contact(first + index * step, name, name if name in pins else "", title) for index, name in enumerate(names)
-    )
-    return ContactRow(text_of(node, "side"), title, contacts)
+    side, title = text_of(node, "side"), text_of(node, "title")
+    paired = integer_of(node, "columns") == 2
+    contacts = []
+    for index, name in enumerate(names):
+        pair = (1, -1)[index % 2] if paired else 0
+        inner = pair == (1 if side in ("right", "bottom") else -1)  # a pair begins at the left, or at the top
+        contacts.append(Contact(first + index * step, name, name if name in pins else "", title, pair, inner))
+    return ContactRow(side, title, tuple(contacts))
 
 
 def _whole(node: YamlNode) -> int:

@@ -14,7 +14,16 @@ from types import MappingProxyType
 from epg.generator.catalog.clocks import check_clocks, check_stated
 from epg.generator.catalog.hardware import Target, listed_pins, names_of
 from epg.generator.diagnostics import Diagnostics, Note, did_you_mean
-from epg.generator.documents.items import elements_of, integer_range, map_of, pin_list, pin_names, text_of, texts_of
+from epg.generator.documents.items import (
+    elements_of,
+    integer_of,
+    integer_range,
+    map_of,
+    pin_list,
+    pin_names,
+    text_of,
+    texts_of,
+)
 from epg.generator.source import Span, YamlNode
 
 
@@ -55,6 +64,12 @@ def check_board(node: YamlNode, diagnostics: Diagnostics) -> None:
 def _layout(layout: YamlNode, pins: set[str], diagnostics: Diagnostics) -> None:
     """Checks the layout: each contact must be a supply or a pin of the board.  A pin can have one contact only."""
     supplies = map_of(layout, "supplies")
+    for row in layout["rows"].elements():
+        count, columns = len(row["contacts"].elements()), integer_of(row, "columns") or 1
+        if count % columns:
+            message = f"{count} contacts are not pairs, which 'columns: {columns}' has"
+            hint = "add the missing contact, for example NC: {role: other, title: not connected} of 'supplies'"
+            diagnostics.error("wrong-value", row["contacts"].span, message, hint=hint)
     seen: dict[str, Span] = {}
     for contact in (child for row in layout["rows"].elements() for child in row["contacts"].elements()):
         name = str(contact.value)

@@ -66,9 +66,10 @@ def composed_names(targets: Iterable[str], roots: Sequence[Path]) -> set[str]:
 
 
 def possible_targets(roots: Sequence[Path]) -> list[str]:
-    """All platforms, and each one with each board, also if it does not support the board's chip: to find a mistype."""
-    boards, platforms = _names("board", "boards", roots), _names("platform", "platforms", roots)
-    return [*platforms, *(f"{board}_{platform}" for board in boards for platform in platforms)]
+    """Each platform with each board, also if it does not support the board's chip: to find a mistyped name."""
+    boards, platforms = (set(_names(each, f"{each}s", roots)) for each in ("board", "platform"))
+    alone = boards & platforms  # a platform with one board has the name of its board
+    return [*alone, *(f"{board}_{platform}" for board in boards - alone for platform in platforms - alone)]
 
 
 def _splits(target: str, roots: Sequence[Path]) -> Iterator[tuple[str, str]]:

@@ -7,12 +7,14 @@ added, would drive the wrong wires.  Therefore free pins are only proposed, as a
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from epg.generator.check.configuration import Component, Configuration
 from epg.generator.correction import KeyValue
 from epg.generator.data import is_own_target_file
 from epg.generator.diagnostics import Diagnostics
+from epg.generator.documents.items import map_of
 from epg.generator.documents.schema import extended_from
 from epg.generator.resolve.first_fit import first_fit, signals_of
 
@@ -29,15 +31,18 @@ def report_unwired(configuration: Configuration, diagnostics: Diagnostics) -> No
             message = f"'{component.name}' has no pin{'s' if missing[1:] else ''} for {', '.join(map(repr, missing))}"
             hint = "no free pins fit: move or remove a component"
             if found:
-                pins = {name: found[component.name, name] for name in missing}
-                if any(pin.isdigit() for pin in own.values()):  # in the form of those that the user has written
-                    pins = {name: configuration.target.board.pin_name(pin) for name, pin in pins.items()}
-                hint = _hint(component, own | pins, configuration)
+                hint = _hint(
+                    component, {name: found.get((component.name, name), own[name]) for name in own}, configuration
+                )
             notes = extended_from(component.node)
             diagnostics.error("unwired", node.span, message, hint=hint, notes=notes, about="pins")
 
 
-def _hint(component: Component, pins: dict[str, str], configuration: Configuration) -> str:
+def _hint(component: Component, pins: Mapping[str, str], configuration: Configuration) -> str:
+    """The hint to write ``pins``.  They are numbers if the user has written a number."""
+    names = map_of(component.node, "pins")
+    if any(isinstance(name, int) for name in names.values()):
+        pins = {name: pin if name in names else configuration.target.board.pin_name(pin) for name, pin in pins.items()}
     text = ", ".join(f"{name}: {pin}" for name, pin in pins.items())
     sentence = f"write 'pins: {{{text}}}' in '{component.name}', or the pins to which it is wired"
     if is_own_target_file(configuration.tcf):
