@@ -13,12 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from epg.live.client import Client, CommandRefused, Lost, TargetDescription
-from epg.live.port import PortError, SerialPort, program_with
+from epg.live.port import PortError, SerialPort
+from epg.live.ports import system
 
-_BY_ID = Path("/dev/serial/by-id")
-_PATTERNS = ("ttyACM*", "ttyUSB*", "cu.usb*")
-DEVICES = Path("/sys/class/tty")
-"""The folder in which Linux has a folder for each terminal."""
 VENDORS = {"2e8a": "Raspberry Pi", "0483": "STMicroelectronics", "2fe3": "Zephyr"}
 """USB vendors of boards with EPG and of their debug probes, without a vendor that ``communication.usb`` sets."""
 
@@ -35,9 +32,10 @@ class Found:
 
 def ports() -> dict[Path, str]:
     """The serial ports with the names that their devices give themselves, which are empty if they are not known."""
-    names = {link.resolve(): link.name for link in _BY_ID.glob("*")} if _BY_ID.is_dir() else {}
-    paths = sorted(path for pattern in _PATTERNS for path in Path("/dev").glob(pattern))
-    return {path: names.get(path, "") for path in paths}
+    try:
+        return {port.path: port.device for port in system().list_ports()}
+    except PortError:
+        return {}  # a system without ports
 
 
 def look_at_all(devices: Mapping[Path, str]) -> list[Found]:
@@ -50,10 +48,9 @@ def look_at_all(devices: Mapping[Path, str]) -> list[Found]:
 
 def look_at(path: Path, device: str = "") -> Found:
     """Asks the target behind a port to describe itself, if the port is that of a board and is not in use."""
-    vendor = _usb_vendor(path)
-    if vendor not in VENDORS:
+    if system().usb_port(path).vendor not in VENDORS:
         return Found(path, device, None, "not asked: it is not a board that EPG knows")
-    user = program_with(path)
+    user = system().program_with(path)
     if user:
         return Found(path, device, None, f"in use by {user}")
     try:
@@ -65,14 +62,3 @@ def look_at(path: Path, device: str = "") -> Found:
                 client.stop()
     except (PortError, Lost, CommandRefused) as problem:
         return Found(path, device, None, str(problem))
-
-
-def _usb_vendor(path: Path) -> str:
-    """The vendor of the USB device with a serial port: four hexadecimal digits, or empty if there is none."""
-    folder = (DEVICES / path.resolve().name / "device").resolve()
-    for each in (folder, *folder.parents):
-        try:
-            return (each / "idVendor").read_text(encoding="ascii").strip()
-        except OSError:
-            continue  # an interface or a port of the device
-    return ""

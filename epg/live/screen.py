@@ -4,21 +4,18 @@
 from __future__ import annotations
 
 import errno
-import os
-import select
 import shutil
 import sys
-import termios
 import textwrap
 import threading
 import time
-import tty
 from collections import deque
 from collections.abc import Callable, Iterable
 
 from epg.live.client import Client, CommandRefused, Lost
 from epg.live.enabling import CONFIRM, send
 from epg.live.faults import Faults
+from epg.live.keyboards import keyboard
 from epg.live.rows import Recorder
 from epg.runs.recording import Row
 
@@ -108,18 +105,18 @@ class Screen:
         try:
             self._run(end, stopped)
             sys.stdout.write("\n")
-        except (OSError, termios.error) as error:
-            if error.args[0] != errno.EIO or getattr(error, "filename", None):
+        except OSError as error:
+            if error.errno != errno.EIO or error.filename:
                 raise  # not that the terminal has closed
 
     def _run(self, end: float, stopped: Callable[[], bool]) -> None:
         due = 0.0
-        with _Keyboard() as keyboard:
+        with keyboard() as keys:
             while not self.over and not stopped() and time.monotonic() < end:
                 while self._numbers:
                     self._client.respond(self._numbers.popleft())
                 self._recording.drain()
-                for key in keyboard.keys(ANSWER):
+                for key in keys.pressed(ANSWER):
                     self._press(key)
                 if time.monotonic() >= due:
                     due = time.monotonic() + PERIOD
@@ -192,23 +189,3 @@ class Screen:
         sys.stdout.write("\x1b[H" + "".join(f"{line[:columns]}\x1b[K\r\n" for line in lines[:-1]))
         sys.stdout.write(f"{lines[-1][:columns]}\x1b[K\x1b[J")
         sys.stdout.flush()
-
-
-class _Keyboard:
-    """The terminal, which gives each key at once and shows none."""
-
-    def __enter__(self) -> _Keyboard:
-        self._file = sys.stdin.fileno()
-        self._before = termios.tcgetattr(self._file)
-        tty.setraw(self._file)
-        sys.stdout.write("\x1b[2J")
-        return self
-
-    def keys(self, seconds: float) -> str:
-        """The keys that were pressed, after at most ``seconds``."""
-        if not select.select([self._file], [], [], seconds)[0]:
-            return ""
-        return os.read(self._file, 1024).decode("utf-8", "ignore") or "\x04"
-
-    def __exit__(self, *_: object) -> None:
-        termios.tcsetattr(self._file, termios.TCSADRAIN, self._before)

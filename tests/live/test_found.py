@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from epg.live import found
+from epg.live.ports import linux
 
 from .target import Target
 
@@ -23,7 +24,7 @@ def system(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """A folder like /sys/class/tty."""
     folder = tmp_path / "tty"
     folder.mkdir()
-    monkeypatch.setattr(found, "DEVICES", folder)
+    monkeypatch.setattr(linux, "DEVICES", folder)
     yield folder
 
 
