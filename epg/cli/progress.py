@@ -35,8 +35,9 @@ class StopRequest:
 
     def __enter__(self) -> StopRequest:
         numbers = [signal.SIGINT, signal.SIGTERM]
-        if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # by `nohup`
-            numbers.append(signal.SIGHUP)
+        hangup = getattr(signal, "SIGHUP", None)  # Windows does not have it
+        if hangup is not None and signal.getsignal(hangup) is not signal.SIG_IGN:  # by `nohup`
+            numbers.append(hangup)
         self._before = {number: signal.signal(number, self._ask) for number in numbers}
         return self
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from epg.live.ports import PortError, UsbPort, darwin, win32
+from epg.live.ports import PortError, UsbPort, darwin, registry, win32
 
 
 class Kernel:
@@ -33,10 +33,15 @@ class Kernel:
         return 1
 
     def ReadFile(self, _: int, buffer: Any, size: int, *__: object) -> int:
-        buffer[: len(self.incoming)] = self.incoming
-        self.count, self.incoming = len(self.incoming), b""
+        data, self.incoming = self.incoming[:size], self.incoming[size:]
+        buffer[: len(data)] = data
+        self.count = len(data)
         self.refusal = 22  # "the device does not recognise the command": it was unplugged
         return int(not self.unplugged)
+
+    def ClearCommError(self, _: int, __: object, queues: Any) -> int:
+        queues._obj.input = len(self.incoming)
+        return 1
 
     def WriteFile(self, _: int, data: bytes, size: int, *__: object) -> int:
         self.count = min(size, self.takes)
@@ -172,7 +177,7 @@ class Registry:
 
 def test_ports_of_the_registry() -> None:
     """The port that was unplugged, COM9, is not there; the serial number of a composite device is its parent's."""
-    assert list(win32.list_ports(Registry(TREE))) == [
+    assert list(registry.ports_of(Registry(TREE))) == [
         UsbPort(Path("COM1")),
         UsbPort(Path("COM5"), "Zephyr (COM5)", "2fe3", "0123456789ABCDEF"),
         UsbPort(Path("COM7"), "", "1a86", ""),
@@ -181,7 +186,7 @@ def test_ports_of_the_registry() -> None:
 
 
 def test_a_computer_without_ports() -> None:
-    assert list(win32.list_ports(Registry({}))) == []
+    assert list(registry.ports_of(Registry({}))) == []
 
 
 # macOS

@@ -16,16 +16,15 @@ from pathlib import Path, PurePath
 from typing import Any
 
 from epg.live.ports import PortError, UsbPort, full, gone, missing, wrong_rate
+from epg.live.ports.registry import ports_of
 
 _READ_AND_WRITE, _OPEN_EXISTING, _OVERLAPPED = 0xC0000000, 3, 0x40000000
 _NOT_FOUND, _NO_PATH, _DENIED, _SHARED, _WRONG_PARAMETER, _PENDING = 2, 3, 5, 32, 87, 997
-_AT_ONCE = 0xFFFFFFFF  # as two of the times of a read: it returns with the first bytes
+_TIMED_OUT = (121, 258, 1460)
 _BINARY, _DTR, _RTS = 0x1, 0x10, 0x1000  # a USB device takes DTR for an open port
 _PURGE_INPUT = 0x8
 _INVALID = c_void_p(-1).value
 _BUFFER = 65536
-_SERIALCOMM = r"HARDWARE\DEVICEMAP\SERIALCOMM"
-_USB = r"SYSTEM\CurrentControlSet\Enum\USB"
 _IN_USE = "close the other programs that can have it: a terminal, an IDE, a page of 'epg connect', another 'epg live'"
 
 
@@ -47,6 +46,12 @@ class _Times(ctypes.Structure):
     _fields_ = tuple(
         (name, c_uint32) for name in ("read_gap", "read_factor", "read_most", "write_factor", "write_most")
     )
+
+
+class _Queues(ctypes.Structure):
+    """COMSTAT"""
+
+    _fields_ = (("flags", c_uint32), ("input", c_uint32), ("output", c_uint32))
 
 
 class _Overlapped(ctypes.Structure):
@@ -92,11 +97,23 @@ class ComPort:
     def read(self, seconds: float) -> bytes:
         milliseconds = max(1, round(seconds * 1000))
         if milliseconds != self._wait:
-            times = _Times(_AT_ONCE, _AT_ONCE, milliseconds, 0, 1000)
+            times = _Times(0, 0, milliseconds, 0, 1000)
             self._check(self._kernel.SetCommTimeouts(self._file, byref(times)))
             self._wait = milliseconds
-        buffer = ctypes.create_string_buffer(_BUFFER)
-        count = self._transfer(self._kernel.ReadFile, buffer, _BUFFER, self._events[0])
+        data = b"" if self._waiting() else self._read(1)
+        return data + self._read(self._waiting())
+
+    def _waiting(self) -> int:
+        """The number of bytes that have arrived."""
+        errors, queues = c_uint32(), _Queues()
+        self._check(self._kernel.ClearCommError(self._file, byref(errors), byref(queues)))
+        return int(queues.input)
+
+    def _read(self, most: int) -> bytes:
+        if most == 0:
+            return b""
+        buffer = ctypes.create_string_buffer(most)
+        count = self._transfer(self._kernel.ReadFile, buffer, most, self._events[0])
         return ctypes.string_at(buffer, count)
 
     def write(self, data: bytes, seconds: float) -> None:
@@ -117,7 +134,9 @@ class ComPort:
         state, count = _Overlapped(event=event), c_uint32()
         if not function(self._file, data, size, None, byref(state)) and self._kernel.error() != _PENDING:
             raise gone(self._path)
-        self._check(self._kernel.GetOverlappedResult(self._file, byref(state), byref(count), True))
+        done = self._kernel.GetOverlappedResult(self._file, byref(state), byref(count), True)
+        if not done and self._kernel.error() not in _TIMED_OUT:
+            raise gone(self._path)  # Windows takes the end of the time for a success, Wine does not
         return count.value
 
     def _check(self, done: int) -> None:
@@ -135,6 +154,7 @@ def _load_kernel() -> Any:
     kernel.GetOverlappedResult.argtypes = (c_void_p, c_void_p, c_void_p, c_uint32)
     for name in ("GetCommState", "SetCommState", "SetCommTimeouts"):
         getattr(kernel, name).argtypes = (c_void_p, c_void_p)
+    kernel.ClearCommError.argtypes = (c_void_p, c_void_p, c_void_p)
     kernel.SetupComm.argtypes = (c_void_p, c_uint32, c_uint32)
     kernel.PurgeComm.argtypes = (c_void_p, c_uint32)
     kernel.CloseHandle.argtypes = (c_void_p,)
@@ -164,53 +184,10 @@ def program_with(path: Path) -> str:
     return ""
 
 
+def list_ports() -> Iterator[UsbPort]:
+    return ports_of(importlib.import_module("winreg"))
+
+
 def usb_port(path: Path) -> UsbPort:
     name = com_name(path)
     return next((port for port in list_ports() if str(port.path) == name), UsbPort(path))
-
-
-def list_ports(registry: Any = None) -> Iterator[UsbPort]:
-    """The ports of SERIALCOMM with what the registry has about their USB devices."""
-    registry = registry if registry is not None else importlib.import_module("winreg")
-    known = {port.path: port for port in _usb_ports(registry)}
-    names = {str(value) for _, value in _values(registry, _SERIALCOMM)}
-    for name in sorted(names, key=lambda name: (len(name), name)):
-        yield known.get(Path(name), UsbPort(Path(name)))
-
-
-def _usb_ports(registry: Any) -> Iterator[UsbPort]:
-    """Also those of devices that were unplugged.  The parts of a composite device have no serial number."""
-    devices = [(kind, each) for kind in _keys(registry, _USB) for each in _keys(registry, rf"{_USB}\{kind}")]
-    parents = {}  # of a composite device's parts: the beginning of their names, and the serial number
-    for kind, each in devices:
-        prefix = dict(_values(registry, rf"{_USB}\{kind}\{each}")).get("ParentIdPrefix")
-        if prefix:
-            parents[str(prefix).lower()] = each
-    for kind, each in devices:
-        key = rf"{_USB}\{kind}\{each}"
-        name = dict(_values(registry, rf"{key}\Device Parameters")).get("PortName")
-        vendor = re.match(r"VID_([0-9A-F]{4})", kind, re.IGNORECASE)
-        if name and vendor:
-            serial = parents.get(each.lower().rpartition("&")[0], "") if "&MI_" in kind.upper() else each
-            device = str(dict(_values(registry, key)).get("FriendlyName", ""))
-            # Windows itself makes a name with '&' for a device without a serial number.
-            yield UsbPort(Path(str(name)), device, vendor[1].lower(), "" if "&" in serial else serial)
-
-
-def _keys(registry: Any, path: str) -> list[str]:
-    return _enumerate(registry, path, registry.EnumKey)
-
-
-def _values(registry: Any, path: str) -> list[tuple[str, object]]:
-    return [(name, value) for name, value, _ in _enumerate(registry, path, registry.EnumValue)]
-
-
-def _enumerate(registry: Any, path: str, function: Callable[[Any, int], Any]) -> list[Any]:
-    """Everything below a key; nothing if it does not exist or must not be read."""
-    found: list[Any] = []
-    try:
-        with registry.OpenKey(registry.HKEY_LOCAL_MACHINE, path) as key:
-            while True:
-                found.append(function(key, len(found)))
-    except OSError:  # the end
-        return found
