@@ -36,6 +36,7 @@ def compile_program(
     assert compiler is not None, "a C compiler is needed"
     defines = ["EPG_HOST_TARGET=epg_host_application", *defines]
     includes = [RUNTIME / "include", HOST / "include", HOST / "src", CONSOLE]
+    includes += [HOST / "src/links/realtime", HOST / "src/links/linux"]
     command = [compiler, "-std=c11", "-O1", "-g", *WARNINGS, *sanitize]
     command += [f"-I{folder}" for folder in includes] + [f"-D{define}" for define in defines]
     command += [str(source) for source in sources] + ["-pthread", "-lm", "-o", str(output)]
@@ -48,7 +49,9 @@ def platform_sources(*, main: bool = True, system: str = "linux") -> list[Path]:
     """All sources of the runtime and the host platform, as the build system would compile them."""
     parts = ("control", "communication", "model")
     folders = [RUNTIME / "src" / part for part in parts]
-    folders += [*sorted((HOST / "src").iterdir()), *sorted((HOST / "src").glob(f"*/{system}"))]
+    systems = ["elsewhere"] if system == "elsewhere" else ["realtime", system]
+    folders += [*sorted((HOST / "src").iterdir())]
+    folders += [folder for name in systems for folder in sorted((HOST / "src").glob(f"*/{name}"))]
     sources = [source for folder in folders for source in sorted(folder.glob("*.c"))] + SCAN
     return [source for source in sources if main or source.name != "main.c"]
 

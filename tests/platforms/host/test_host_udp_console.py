@@ -24,8 +24,13 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
     sources = [TESTS, PROGRAMS / "udp_client.c", BENCH / "console_bench.c"]
     sources += [*FAKES, *runtime_sources(), *CONSOLE.glob("*.c")]
     links = HOST / "src" / "links"
-    sources += [links / "blake2s.c", links / "udp_address.c", *(links / "linux").glob("udp_*.c")]
-    includes = [HOST / "src", PROGRAMS, CONSOLE, BENCH]
+    sources += [
+        links / "blake2s.c",
+        links / "udp_address.c",
+        *(links / "realtime").glob("udp_*.c"),
+        links / "linux/udp_key.c",
+    ]
+    includes = [HOST / "src", links / "realtime", links / "linux", PROGRAMS, CONSOLE, BENCH]
     return compile_program(tmp_path_factory.mktemp("udp_console") / "tests", sources, includes=includes)
 
 

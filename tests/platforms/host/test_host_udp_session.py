@@ -16,7 +16,7 @@ TESTS = PROGRAMS / "udp_session_tests.c"
 
 @pytest.fixture(scope="module")
 def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    sources = [TESTS, HOST / "src" / "links" / "linux" / "udp_session.c", *SCAN]
+    sources = [TESTS, HOST / "src" / "links" / "realtime" / "udp_session.c", *SCAN]
     return compile_program(tmp_path_factory.mktemp("udp") / "tests", sources, includes=[HOST / "src", CONSOLE])
 
 

@@ -12,8 +12,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "links/linux/udp_seal.h"
-#include "links/linux/udp_session.h"
+#include "links/realtime/udp_seal.h"
+#include "links/realtime/udp_session.h"
 
 enum { CLIENT_LONGEST = 8192 };
 

@@ -2,7 +2,7 @@
  * @file
  * The connection of the console to a program by UDP, datagram by datagram.
  */
-#include "links/linux/udp_session.h"
+#include "links/realtime/udp_session.h"
 
 #include "check.h"
 

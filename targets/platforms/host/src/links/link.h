@@ -3,7 +3,7 @@
  * @file
  * The link to the agent of a middleware: by UDP, or by a terminal such as /dev/ttyUSB0.
  *
- * It needs Linux, like real time.  Only one thread may use a link.  No function waits.
+ * It needs Linux or Windows, like real time.  Only one thread may use a link.  No function waits.
  */
 #ifndef EPG_HOST_LINK_H
 #define EPG_HOST_LINK_H
@@ -33,8 +33,11 @@ bool epg_host_link_is_address(const char *text);
  */
 bool epg_host_link_udp(epg_host_link_t *link, const char *address);
 
-/** Makes a link by the terminal `device`, which need not exist yet: it is opened as soon as it does. */
-void epg_host_link_serial(epg_host_link_t *link, const char *device, uint32_t baud_rate);
+/**
+ * Makes a link by the terminal `device`, which need not exist yet: it is opened as soon as it does.  Returns false, with
+ * a message, on a system that has no such links.
+ */
+bool epg_host_link_serial(epg_host_link_t *link, const char *device, uint32_t baud_rate);
 
 /**
  * Makes a link to `agent`, which is HOST:PORT or a terminal.  Returns false, with a message, like epg_host_link_udp().

@@ -68,6 +68,9 @@ void epg_host_services_start(const epg_host_services_t *services);
  */
 void epg_host_services_serve(epg_host_services_t *services, uint64_t time_ns);
 
+/** Sleeps until monotonic time `time_ns`, or until bytes arrive at the link or the console. */
+void epg_host_services_wait(const epg_host_services_t *services, uint64_t time_ns);
+
 void epg_host_services_stop(const epg_host_services_t *services);
 
 #endif

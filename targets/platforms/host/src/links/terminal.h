@@ -5,7 +5,7 @@
  *
  * A pseudo-terminal looks to other programs like the serial port of a board.
  *
- * It needs Linux, like real time.  Only one thread may use a terminal.
+ * It needs Linux or Windows, like real time.  Windows has no pseudo-terminals.  Only one thread may use a terminal.
  */
 #ifndef EPG_HOST_TERMINAL_H
 #define EPG_HOST_TERMINAL_H

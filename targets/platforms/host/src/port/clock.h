@@ -11,6 +11,12 @@
 /** Monotonic time in nanoseconds, whatever epg_port_time_ns() returns.  Callable from every thread. */
 uint64_t epg_host_monotonic_ns(void);
 
+/** Sleeps until monotonic time `time_ns`.  A signal can end the sleep early, and on some systems also the clock can. */
+void epg_host_sleep_until(uint64_t time_ns);
+
+/** A random number.  Returns 0 if the system has none. */
+uint32_t epg_host_random(void);
+
 /** From now on epg_port_time_ns() returns `time_ns`.  Must not be used in a program with several threads. */
 void epg_host_clock_simulate(uint64_t time_ns);
 

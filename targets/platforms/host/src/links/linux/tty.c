@@ -136,7 +136,7 @@ static size_t write_bytes(void *context, const void *data, size_t size)
     return count;
 }
 
-void epg_host_link_serial(epg_host_link_t *link, const char *device, uint32_t baud_rate)
+bool epg_host_link_serial(epg_host_link_t *link, const char *device, uint32_t baud_rate)
 {
     *link = (epg_host_link_t){
         .stream =
@@ -145,6 +145,7 @@ void epg_host_link_serial(epg_host_link_t *link, const char *device, uint32_t ba
         .device = device,
         .baud_rate = baud_rate,
     };
+    return true;
 }
 
 void epg_host_link_close(epg_host_link_t *link)

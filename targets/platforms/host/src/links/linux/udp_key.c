@@ -5,7 +5,7 @@
  */
 #define _POSIX_C_SOURCE 200809L
 
-#include "udp_key.h"
+#include "links/realtime/udp_key.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -8,8 +8,8 @@
 
 #include <stdbool.h>
 #include <stddef.h>
-#include <sys/socket.h>
-#include <sys/types.h>
+
+#include "sockets.h"
 
 /** Size of an address as text, with its final 0. */
 enum { EPG_HOST_PEER_NAME = 128 };
@@ -43,6 +43,6 @@ void epg_host_peer_name(const epg_host_peer_t *peer, char text[EPG_HOST_PEER_NAM
 bool epg_host_peer_send(int file, const epg_host_peer_t *peer, const void *data, size_t size);
 
 /** Receives a datagram of any size, and the first `size` bytes of it.  Returns its own size; negative: there is none. */
-ssize_t epg_host_peer_receive(int file, epg_host_peer_t *peer, void *data, size_t size);
+long epg_host_peer_receive(int file, epg_host_peer_t *peer, void *data, size_t size);
 
 #endif

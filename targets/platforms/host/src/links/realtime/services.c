@@ -3,16 +3,12 @@
  * @file
  * The middlewares that run beside the control loop in real time: services.h.
  */
-#define _POSIX_C_SOURCE 200809L
-
 #include "links/services.h"
-
-#include <poll.h>
 
 #include "epg/port.h"
 #include "port/clock.h"
 
-enum { MS = 1000 * 1000, LONGEST_SLEEP_NS = MS, MOST_FILES = 3 };
+enum { LONGEST_SLEEP_NS = 1000 * 1000 };
 
 /** The target's middleware if it has a connection other than that of a console; NULL otherwise. */
 static const epg_middleware_t *connected(const epg_host_services_t *services)
@@ -47,25 +43,6 @@ void epg_host_services_start(const epg_host_services_t *services)
     }
 }
 
-/** Sleeps until `time_ns`, or until bytes arrive at the link or the console. */
-static void wait_for_files(const epg_host_services_t *services, uint64_t time_ns)
-{
-    const uint64_t now_ns = epg_host_monotonic_ns();
-    const int timeout_ms = time_ns > now_ns ? (int)((time_ns - now_ns + MS - 1) / MS) : 0;
-    struct pollfd entries[MOST_FILES];
-    nfds_t count = 0;
-    if (services->link != NULL && services->link->file >= 0) {
-        entries[count++] = (struct pollfd){.fd = services->link->file, .events = POLLIN};
-    }
-    if (services->terminal != NULL && epg_host_terminal_listens(services->terminal)) {
-        entries[count++] = (struct pollfd){.fd = services->terminal->input, .events = POLLIN};
-    }
-    if (services->udp != NULL) {
-        entries[count++] = (struct pollfd){.fd = epg_host_udp_console_file(services->udp), .events = POLLIN};
-    }
-    (void)poll(entries, count, timeout_ms);
-}
-
 void epg_host_services_serve(epg_host_services_t *services, uint64_t time_ns)
 {
     const epg_middleware_t *middleware = connected(services);
@@ -77,7 +54,7 @@ void epg_host_services_serve(epg_host_services_t *services, uint64_t time_ns)
         const uint64_t now_ns = epg_host_monotonic_ns();
         middleware->wait(epg_port_time_ns() + (until_ns > now_ns ? until_ns - now_ns : 0));
     } else {
-        wait_for_files(services, until_ns);
+        epg_host_services_wait(services, until_ns);
     }
     if (middleware != NULL) {
         middleware->poll(epg_port_time_ns());

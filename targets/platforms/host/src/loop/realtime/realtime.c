@@ -3,59 +3,31 @@
  * @file
  * Real time: a control thread, which wakes up at absolute times of the monotonic clock.
  */
-#define _POSIX_C_SOURCE 200809L
-
-#include <errno.h>
 #include <fenv.h>
-#include <pthread.h>
-#include <sched.h>
-#include <semaphore.h>
 #include <stdatomic.h>
 #include <stdio.h>
-#include <string.h>
-#include <sys/mman.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
-#include <time.h>
 
 #include "epg/host.h"
 #include "loop/run.h"
+#include "loop/thread.h"
 #include "port/clock.h"
 
 enum {
-    PRIORITY = 80,                     /* above threaded interrupts (50), below the kernel's own threads (99) */
-    STACK_SIZE = 2 << 20,              /* bytes, with thread-local storage, up to 1 MiB with sanitizers */
-    STACK_PREFAULTED = 256 << 10,      /* bytes that the cycle may use without a page fault */
     START_DELAY_NS = 20 * 1000 * 1000, /* from the thread's start to its first tick: time for the caller to prepare */
     LONGEST_SLEEP_NS = 100 * 1000 * 1000, /* longest sleep of the communication side: it then looks for Ctrl-C */
-    WRITE_PERIOD_NS = 100 * 1000 * 1000   /* from one write of the trace's rows to the next */
+    WRITE_PERIOD_NS = 100 * 1000 * 1000,  /* from one write of the trace's rows to the next */
+    NAP_NS = 100 * 1000                   /* between two looks whether a thread has started */
 };
 
 /** A control thread, with the data that it shares with the thread that has started it. */
 typedef struct control_thread {
     epg_host_run_t *run;
-    pthread_t thread;
-    sem_t ready;       /* posted when start_ns is known */
+    epg_host_thread_t thread;
+    atomic_bool ready; /* start_ns is known */
     uint64_t start_ns; /* monotonic time of the first tick */
     atomic_bool stop;
     atomic_bool ended; /* the thread has ended by itself */
 } control_thread_t;
-
-/** Sleeps until monotonic time `time_ns`.  Returns early, with EINTR, if a signal arrives. */
-static int sleep_until(uint64_t time_ns)
-{
-    const struct timespec until = {.tv_sec = (time_t)(time_ns / 1000000000U), .tv_nsec = (long)(time_ns % 1000000000U)};
-    return clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, NULL);
-}
-
-/** Writes to the part of the stack that the cycle will use.  The system maps its pages now, and not during a cycle. */
-static void prefault_stack(void)
-{
-    volatile unsigned char stack[STACK_PREFAULTED];
-    for (size_t i = 0; i < sizeof stack; i += 1024) {
-        stack[i] = 0;
-    }
-}
 
 /**
  * The control loop.  The plant is simulated between two cycles, outside the measured time.  If the plant takes too
@@ -71,7 +43,8 @@ static void control_loop(control_thread_t *self)
     while (next_ns < run->end_ns && !atomic_load(&self->stop) && epg_host_plant_is_sound(run, next_ns)) {
         tick_ns = next_ns;
         const uint64_t due_ns = self->start_ns + tick_ns;
-        while (sleep_until(due_ns) == EINTR) {
+        while (epg_host_monotonic_ns() < due_ns) {
+            epg_host_sleep_until(due_ns);
         }
         const uint64_t begun_ns = epg_host_monotonic_ns();
         epg_control_cycle(run->host->target->control, due_ns, missed);
@@ -89,89 +62,33 @@ static void control_loop(control_thread_t *self)
     epg_host_run_end(run, tick_ns, next_ns);
 }
 
-static void *control_main(void *argument)
+static void control_main(void *argument)
 {
     control_thread_t *self = argument;
     (void)fesetenv(FE_DFL_ENV); /* see epg_host_main(): a program of the user's may have another mode */
-    /*
-     * Without a real-time policy, the kernel may delay a timer by up to 50 us, to handle several at once.  Forbid it.
-     */
-    prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
-    prefault_stack();
-    /* The loop uses only memory that is mapped already.  MCL_FUTURE could make later allocations of other code fail. */
-    self->run->memory_locked = mlockall(MCL_CURRENT) == 0;
+    self->run->memory_locked = epg_host_thread_prepare();
     self->start_ns = epg_host_monotonic_ns() + START_DELAY_NS;
-    sem_post(&self->ready);
+    atomic_store(&self->ready, true);
     control_loop(self);
     atomic_store(&self->ended, true);
-    return NULL;
-}
-
-/** Starts the thread under `policy` and `priority`; returns 0 or the error number. */
-static int create_thread(control_thread_t *self, int policy, int priority)
-{
-    const struct sched_param parameter = {.sched_priority = priority};
-    pthread_attr_t attributes;
-    int error = pthread_attr_init(&attributes);
-    if (error != 0) {
-        return error;
-    }
-    pthread_attr_setstacksize(&attributes, STACK_SIZE);
-    pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
-    pthread_attr_setschedpolicy(&attributes, policy);
-    pthread_attr_setschedparam(&attributes, &parameter);
-    error = pthread_create(&self->thread, &attributes, control_main, self);
-    pthread_attr_destroy(&attributes);
-    return error;
-}
-
-/** Tries SCHED_FIFO with the highest priority that the user is permitted, at most PRIORITY; else uses SCHED_OTHER. */
-static int create_thread_best(control_thread_t *self)
-{
-    epg_host_run_t *run = self->run;
-    run->scheduler = "SCHED_FIFO";
-    run->scheduler_reason = NULL;
-    int error = create_thread(self, SCHED_FIFO, PRIORITY);
-    struct rlimit limit;
-    if (error == EPERM && getrlimit(RLIMIT_RTPRIO, &limit) == 0 && limit.rlim_cur > 0 && limit.rlim_cur < PRIORITY) {
-        error = create_thread(self, SCHED_FIFO, (int)limit.rlim_cur);
-    }
-    if (error != 0) {
-        run->scheduler = "SCHED_OTHER";
-        run->scheduler_reason = strerror(error);
-        error = create_thread(self, SCHED_OTHER, 0);
-    }
-    return error;
 }
 
 /** Starts the control thread and waits until `start_ns` is known.  Returns false, with a message, if this fails. */
 static bool start_thread(control_thread_t *self, epg_host_run_t *run)
 {
-    sigset_t all;
-    sigset_t before;
     self->run = run;
     atomic_init(&self->stop, false);
     atomic_init(&self->ended, false);
-    sem_init(&self->ready, 0, 0);
-    /* The control thread inherits this mask.  Other threads handle all signals, so that none interrupts a cycle. */
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    const int error = create_thread_best(self);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    if (error != 0) {
-        fprintf(stderr, "error: cannot start the control thread: %s\n", strerror(error));
-        sem_destroy(&self->ready);
+    atomic_init(&self->ready, false);
+    const char *error = epg_host_thread_start_control(&self->thread, control_main, run, self);
+    if (error != NULL) {
+        fprintf(stderr, "error: cannot start the control thread: %s\n", error);
         return false;
     }
-    while (sem_wait(&self->ready) != 0) {
+    while (!atomic_load(&self->ready)) {
+        epg_host_sleep_until(epg_host_monotonic_ns() + NAP_NS);
     }
     return true;
-}
-
-static void join_thread(control_thread_t *self)
-{
-    pthread_join(self->thread, NULL);
-    sem_destroy(&self->ready);
 }
 
 /* The trace ---------------------------------------------------------------------------------------------------- */
@@ -179,19 +96,18 @@ static void join_thread(control_thread_t *self)
 /** The thread that writes the trace.  Only this one waits for the disk. */
 typedef struct writer {
     epg_host_trace_t *trace;
-    pthread_t thread;
+    epg_host_thread_t thread;
     bool runs;
     atomic_bool stop;
 } writer_t;
 
-static void *writer_main(void *argument)
+static void writer_main(void *argument)
 {
     writer_t *self = argument;
     while (!atomic_load(&self->stop)) {
-        sleep_until(epg_host_monotonic_ns() + WRITE_PERIOD_NS);
+        epg_host_sleep_until(epg_host_monotonic_ns() + WRITE_PERIOD_NS);
         epg_host_trace_write(self->trace);
     }
-    return NULL;
 }
 
 /** Starts the thread if there is a trace.  Returns false, with a message, if this fails. */
@@ -203,15 +119,10 @@ static bool start_writer(writer_t *self, epg_host_trace_t *trace)
     if (trace->file == NULL) {
         return true;
     }
-    sigset_t all;
-    sigset_t before;
-    sigfillset(&all); /* the communication side must get the signals: they end its sleep */
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    const int error = pthread_create(&self->thread, NULL, writer_main, self);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    self->runs = error == 0;
-    if (error != 0) {
-        fprintf(stderr, "error: cannot start the thread that writes the trace: %s\n", strerror(error));
+    const char *error = epg_host_thread_start(&self->thread, writer_main, self);
+    self->runs = error == NULL;
+    if (error != NULL) {
+        fprintf(stderr, "error: cannot start the thread that writes the trace: %s\n", error);
     }
     return self->runs;
 }
@@ -220,7 +131,7 @@ static void stop_writer(writer_t *self)
 {
     if (self->runs) {
         atomic_store(&self->stop, true);
-        pthread_join(self->thread, NULL);
+        epg_host_thread_join(&self->thread);
     }
 }
 
@@ -232,7 +143,7 @@ static void sleep_or_serve(epg_host_run_t *run, uint64_t time_ns)
     if (epg_host_services_run(&run->services)) {
         epg_host_services_serve(&run->services, time_ns);
     } else {
-        sleep_until(time_ns);
+        epg_host_sleep_until(time_ns);
     }
 }
 
@@ -254,7 +165,7 @@ bool epg_host_run_realtime(epg_host_run_t *run)
     const uint64_t start_ns = control.start_ns;
     uint64_t now_ns = 0;
     run->communication.start_ns = start_ns;
-    sleep_until(start_ns);
+    epg_host_sleep_until(start_ns);
     while (writes && now_ns < run->end_ns && !ended(run) && !atomic_load(&control.ended)) {
         uint64_t until_ns = epg_host_communication_next(&run->communication);
         until_ns = until_ns < now_ns + LONGEST_SLEEP_NS ? until_ns : now_ns + LONGEST_SLEEP_NS;
@@ -264,7 +175,7 @@ bool epg_host_run_realtime(epg_host_run_t *run)
         epg_host_communicate_realtime(&run->communication, now_ns);
     }
     atomic_store(&control.stop, now_ns < run->end_ns);
-    join_thread(&control);
+    epg_host_thread_join(&control.thread);
     stop_writer(&writer);
     run->wall_time_ns = epg_host_monotonic_ns() - start_ns;
     epg_host_services_stop(&run->services);
@@ -277,13 +188,13 @@ static struct {
     bool running;
     epg_host_run_t run;
     control_thread_t control;
-    pthread_t communication;
+    epg_host_thread_t communication;
     bool communicates;
     atomic_bool stop;
 } own;
 
 /** Body of the communication thread: serves the middleware until the program stops the target. */
-static void *communication_main(void *argument)
+static void communication_main(void *argument)
 {
     (void)argument;
     epg_host_services_start(&own.run.services);
@@ -292,7 +203,6 @@ static void *communication_main(void *argument)
         epg_host_services_serve(&own.run.services, UINT64_MAX);
     }
     epg_host_services_stop(&own.run.services);
-    return NULL;
 }
 
 /** Starts the communication thread if the target's middleware has a connection.  Returns false if this fails. */
@@ -308,7 +218,7 @@ static bool start_communication(const epg_host_target_t *host)
         return true;
     }
     atomic_init(&own.stop, false);
-    own.communicates = pthread_create(&own.communication, NULL, communication_main, NULL) == 0;
+    own.communicates = epg_host_thread_start(&own.communication, communication_main, NULL) == NULL;
     return own.communicates;
 }
 
@@ -316,7 +226,7 @@ static void stop_communication(void)
 {
     if (own.communicates) {
         atomic_store(&own.stop, true);
-        pthread_join(own.communication, NULL);
+        epg_host_thread_join(&own.communication);
         own.communicates = false;
     }
     epg_host_services_close(&own.run.services);
@@ -339,14 +249,13 @@ bool epg_host_start(const epg_host_target_t *host)
 bool epg_host_stop(void)
 {
     if (own.running) {
-        const pthread_t caller = pthread_self();
-        if (pthread_equal(caller, own.control.thread) != 0 ||
-            (own.communicates && pthread_equal(caller, own.communication) != 0)) {
+        if (epg_host_thread_is_caller(&own.control.thread) ||
+            (own.communicates && epg_host_thread_is_caller(&own.communication))) {
             return false; /* a thread cannot wait for its own end */
         }
         stop_communication();
         atomic_store(&own.control.stop, true);
-        join_thread(&own.control);
+        epg_host_thread_join(&own.control.thread);
         own.running = false;
     }
     return true;

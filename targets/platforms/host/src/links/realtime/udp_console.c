@@ -9,7 +9,6 @@
 
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "epg/control.h"
 #include "port/clock.h"
@@ -360,7 +359,7 @@ static void take_of_person(uint64_t now_ns)
 /** Receives a datagram.  Returns false if there is none. */
 static bool receive(void)
 {
-    const ssize_t count = epg_host_peer_receive(console.file, &packet->sender, packet->data, LONGEST);
+    const long count = epg_host_peer_receive(console.file, &packet->sender, packet->data, LONGEST);
     packet->length = count > 0 && count <= LONGEST ? (size_t)count : 0;
     return count >= 0;
 }
@@ -484,7 +483,7 @@ epg_host_udp_console_t *epg_host_udp_console_open(const epg_host_options_t *opti
         return NULL;
     }
     if (!open_access(options)) {
-        close(console.file);
+        epg_host_socket_close(console.file);
         return NULL;
     }
     print_access(options, target->application->name);
@@ -506,5 +505,5 @@ void epg_host_udp_console_close(epg_host_udp_console_t *self)
     if (self->user == PROGRAM) {
         send_flags(&self->peer, self->keyed ? &self->seal : NULL, EPG_HOST_UDP_OVER, self->session.id, "");
     }
-    close(self->file);
+    epg_host_socket_close(self->file);
 }

@@ -51,9 +51,9 @@ static int open_link(epg_host_services_t *services, const epg_host_target_t *hos
               stderr);
         return WRONG_INPUT;
     }
-    if (options->device != NULL) {
-        epg_host_link_serial(&link_to_agent, agent, host->baud_rate);
-    } else if (!epg_host_link_open(&link_to_agent, agent, host->baud_rate)) {
+    const bool opened = options->device != NULL ? epg_host_link_serial(&link_to_agent, agent, host->baud_rate)
+                                                : epg_host_link_open(&link_to_agent, agent, host->baud_rate);
+    if (!opened) {
         return FAILED;
     }
     services->link = &link_to_agent;

@@ -7,18 +7,14 @@
 
 #include "udp_peer.h"
 
-#include <errno.h>
-#include <netdb.h>
-#include <netinet/in.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "links/udp_address.h"
 
 bool epg_host_peer_equal(const epg_host_peer_t *one, const epg_host_peer_t *other)
 {
-    return one->size == other->size && memcmp(&one->address, &other->address, one->size) == 0;
+    return one->size == other->size && memcmp(&one->address, &other->address, (size_t)one->size) == 0;
 }
 
 void epg_host_peer_name(const epg_host_peer_t *peer, char text[EPG_HOST_PEER_NAME])
@@ -35,16 +31,15 @@ void epg_host_peer_name(const epg_host_peer_t *peer, char text[EPG_HOST_PEER_NAM
 
 bool epg_host_peer_send(int file, const epg_host_peer_t *peer, const void *data, size_t size)
 {
-    const ssize_t count =
-        sendto(file, data, size, MSG_DONTWAIT | MSG_NOSIGNAL, (const struct sockaddr *)&peer->address, peer->size);
-    return count >= 0 || (errno != EAGAIN && errno != EWOULDBLOCK && errno != ENOBUFS);
+    return epg_host_socket_send(file, data, size, &peer->address, peer->size) >= 0 ||
+           !epg_host_socket_is_full(epg_host_socket_error());
 }
 
-ssize_t epg_host_peer_receive(int file, epg_host_peer_t *peer, void *data, size_t size)
+long epg_host_peer_receive(int file, epg_host_peer_t *peer, void *data, size_t size)
 {
     memset(peer, 0, sizeof *peer);
     peer->size = sizeof peer->address;
-    return recvfrom(file, data, size, MSG_DONTWAIT | MSG_TRUNC, (struct sockaddr *)&peer->address, &peer->size);
+    return epg_host_socket_receive(file, data, size, &peer->address, &peer->size);
 }
 
 static void refuse(const char *address, const char *reason, const char *hint)
@@ -59,27 +54,28 @@ int epg_host_peer_listen(const char *address)
     (void)epg_host_udp_address_split(address, &parts);
     const char *host = parts.host[0] != '\0' ? parts.host : "127.0.0.1";
     struct addrinfo *found = NULL;
+    epg_host_sockets_start();
     const int error = getaddrinfo(host, parts.port, &wanted, &found);
     if (error != 0) {
         refuse(address, gai_strerror(error), "give an address of this computer, for example 127.0.0.1:7000");
         return -1;
     }
-    const int file = socket(found->ai_family, found->ai_socktype, found->ai_protocol);
-    const bool bound = file >= 0 && bind(file, found->ai_addr, found->ai_addrlen) == 0;
-    const int reason = errno;
+    const int file = epg_host_socket_open(found);
+    const bool bound = file >= 0 && epg_host_socket_bind(file, found);
+    const int reason = epg_host_socket_error();
     freeaddrinfo(found);
     if (bound) {
         return file;
     }
     if (file >= 0) {
-        close(file);
+        epg_host_socket_close(file);
     }
-    if (reason == EADDRINUSE) {
+    if (epg_host_socket_is_taken(reason)) {
         refuse(address, "another program uses this port", "end it, or choose another port");
-    } else if (reason == EADDRNOTAVAIL) {
+    } else if (epg_host_socket_is_foreign(reason)) {
         refuse(address, "this computer does not have this address", "'ip address' lists its addresses");
     } else {
-        refuse(address, strerror(reason), "choose an address of this computer and a port above 1023");
+        refuse(address, epg_host_socket_text(reason), "choose an address of this computer and a port above 1023");
     }
     return -1;
 }
@@ -87,7 +83,7 @@ int epg_host_peer_listen(const char *address)
 static bool get_own(int file, epg_host_peer_t *own)
 {
     own->size = sizeof own->address;
-    return getsockname(file, (struct sockaddr *)&own->address, &own->size) == 0;
+    return epg_host_socket_name(file, &own->address, &own->size);
 }
 
 bool epg_host_peer_is_local(int file)

@@ -5,17 +5,13 @@
  */
 #define _POSIX_C_SOURCE 200809L
 
-#include <errno.h>
-#include <netdb.h>
-#include <netinet/in.h>
+#include "links/link.h"
+
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
-#include "links/link.h"
 #include "links/udp_address.h"
+#include "sockets.h"
 
 enum { LARGEST_PACKET = 65507 };
 
@@ -30,8 +26,7 @@ bool epg_host_link_open(epg_host_link_t *link, const char *agent, uint32_t baud_
     if (agent[0] != '/' && epg_host_link_is_address(agent)) {
         return epg_host_link_udp(link, agent);
     }
-    epg_host_link_serial(link, agent, baud_rate);
-    return true;
+    return epg_host_link_serial(link, agent, baud_rate);
 }
 
 static bool connected(void *context)
@@ -40,28 +35,22 @@ static bool connected(void *context)
     return link->file >= 0;
 }
 
-/** True if a call failed because of an earlier packet.  Linux reports such an error once; the call must be repeated. */
-static bool was_refused(ssize_t count)
-{
-    return count < 0 && (errno == ECONNREFUSED || errno == EINTR || errno == EHOSTUNREACH || errno == ENETUNREACH);
-}
-
 static size_t read_packet(void *context, void *data, size_t size)
 {
     const epg_host_link_t *link = context;
-    ssize_t count = recv(link->file, data, size, MSG_DONTWAIT);
-    if (was_refused(count)) {
-        count = recv(link->file, data, size, MSG_DONTWAIT);
+    long count = epg_host_socket_receive(link->file, data, size, NULL, NULL);
+    if (count < 0 && epg_host_socket_was_refused(epg_host_socket_error())) {
+        count = epg_host_socket_receive(link->file, data, size, NULL, NULL);
     }
-    return count > 0 ? (size_t)count : 0;
+    return count > 0 ? ((size_t)count < size ? (size_t)count : size) : 0;
 }
 
 static size_t write_packet(void *context, const void *data, size_t size)
 {
     const epg_host_link_t *link = context;
-    ssize_t count = send(link->file, data, size, MSG_DONTWAIT | MSG_NOSIGNAL);
-    if (was_refused(count)) {
-        count = send(link->file, data, size, MSG_DONTWAIT | MSG_NOSIGNAL);
+    long count = epg_host_socket_send(link->file, data, size, NULL, 0);
+    if (count < 0 && epg_host_socket_was_refused(epg_host_socket_error())) {
+        count = epg_host_socket_send(link->file, data, size, NULL, 0);
     }
     return count > 0 ? (size_t)count : 0;
 }
@@ -76,12 +65,12 @@ static size_t writable(void *context)
 static int connect_to(const struct addrinfo *address)
 {
     for (; address != NULL; address = address->ai_next) {
-        const int file = socket(address->ai_family, address->ai_socktype, address->ai_protocol);
-        if (file >= 0 && connect(file, address->ai_addr, address->ai_addrlen) == 0) {
+        const int file = epg_host_socket_open(address);
+        if (file >= 0 && epg_host_socket_connect(file, address)) {
             return file;
         }
         if (file >= 0) {
-            close(file);
+            epg_host_socket_close(file);
         }
     }
     return -1;
@@ -102,6 +91,7 @@ bool epg_host_link_udp(epg_host_link_t *link, const char *address)
                    .datagrams = true},
         .file = -1,
     };
+    epg_host_sockets_start();
     const int error = getaddrinfo(parts.host, parts.port, &wanted, &found);
     if (error != 0) {
         fprintf(stderr, "error: the agent's host '%s' was not found: %s\n", parts.host, gai_strerror(error));
@@ -109,7 +99,8 @@ bool epg_host_link_udp(epg_host_link_t *link, const char *address)
     }
     link->file = connect_to(found);
     if (link->file < 0) {
-        fprintf(stderr, "error: the agent's address '%s' cannot be reached: %s\n", address, strerror(errno));
+        fprintf(stderr, "error: the agent's address '%s' cannot be reached: %s\n", address,
+                epg_host_socket_text(epg_host_socket_error()));
     }
     freeaddrinfo(found);
     return link->file >= 0;

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/**
+ * @file
+ * Systems on which EPG has only simulated time, in which nothing waits.
+ */
+#include "port/clock.h"
+
+void epg_host_sleep_until(uint64_t time_ns)
+{
+    while (epg_host_monotonic_ns() < time_ns) {
+    }
+}
+
+uint32_t epg_host_random(void)
+{
+    return 1U;
+}

@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs EPG as Windows' Python does it, under Wine, and prints a report: ``.ci/windows [FOLDER]``.
+
+What Windows writes is compared byte for byte with what Linux writes from the same files.  Then the programs of Windows
+read a checkout whose lines end as on Windows.
+"""
+
+from __future__ import annotations
+
+import csv
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+
+from tests.checkout import ROOT
+from tests.windows.computer import MISSING, Computer, is_here
+
+TARGETS = ("host", "rpi_pico2_freertos", "nucleo_h743zi_bare_metal", "rpi_pico_zephyr")
+"""The targets for which sources are generated."""
+
+
+class Report:
+    """Counts the steps, and prints each with its time."""
+
+    def __init__(self) -> None:
+        self.passed, self.failed = 0, 0
+
+    def step(self, name: str, work: Callable[[], str | None]) -> None:
+        """Runs one step, which returns a remark, and fails by an exception."""
+        began = time.monotonic()
+        try:
+            result = f"passed  {name}: {work() or 'good'}"
+            self.passed += 1
+        except Exception as error:
+            result = f"FAILED  {name}: {type(error).__name__}: {error}"
+            self.failed += 1
+        print(f"{result} ({time.monotonic() - began:.0f} s)", flush=True)
+
+
+def expect(done: subprocess.CompletedProcess[str], status: int = 0) -> str:
+    if done.returncode != status:
+        raise RuntimeError(f"status {done.returncode}\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}")
+    return done.stdout
+
+
+def here(*command: str) -> str:
+    """Runs a program of this computer."""
+    return expect(subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False))
+
+
+def same_folders(ours: Path, theirs: Path, renamed: Mapping[Path, Path]) -> int:
+    """The number of files of two equal folders.  ``renamed`` has the folders of Windows' run and those of Linux'."""
+    names = [sorted(str(path.relative_to(folder)) for path in folder.rglob("*")) for folder in (ours, theirs)]
+    if names[0] != names[1]:
+        raise RuntimeError(f"files differ: {sorted(set(names[0]) ^ set(names[1]))}")
+    files = [name for name in names[0] if (ours / name).is_file()]
+    for name in files:
+        found = (theirs / name).read_bytes()
+        for one, other in renamed.items():
+            found = found.replace(f"Z:{one}".encode(), str(other).encode())
+        if found != (ours / name).read_bytes():
+            raise RuntimeError(f"contents differ: {name}")
+    if not files:
+        raise RuntimeError("there are no files")
+    return len(files)
+
+
+def same_columns(ours: Path, theirs: Path, without: Sequence[str]) -> int:
+    """The number of rows of two tables with equal columns, but for those whose names have a word of ``without``."""
+    tables = [list(csv.reader(path.read_text(encoding="utf-8").splitlines())) for path in (ours, theirs)]
+    for one, other in zip(*(zip(*table, strict=True) for table in tables), strict=True):
+        if one != other and not any(word in one[0] for word in without):
+            raise RuntimeError(f"{ours.name}: {one[0]} differs")
+    return len(tables[0])
+
+
+class Run:
+    """The steps.  ``source`` is a checkout, in which the commands run; ``work`` takes what they write."""
+
+    def __init__(self, computer: Computer, source: Path, work: Path) -> None:
+        self.computer, self.source, self.work = computer, source, work
+        shutil.rmtree(work, ignore_errors=True)
+        work.mkdir(parents=True)
+
+    def epg(self, *words: str | Path, status: int = 0) -> str:
+        return expect(self.computer.run(self.computer.python, "-m", "epg", *words, cwd=self.source), status)
+
+    def epg_here(self, *words: str | Path) -> str:
+        return here(sys.executable, "-m", "epg", *map(str, words))
+
+    def generated(self, target: str) -> str:
+        """Generates the sources of JIWY for ``target``, on both systems."""
+        words = ["generate", "jiwy", "--tcf", f"{target}_jiwy.tcf", "--model", "examples/jiwy/model"]
+        words += ["--bindings", "examples/jiwy/jiwy.bindings.yaml", "--output"]
+        if target == "host":
+            words[1:1] = ["--plant", "examples/jiwy/plant", "--plant-bindings", "examples/jiwy/plant.bindings.yaml"]
+        ours, theirs = self.work / f"linux_{target}", self.work / f"windows_{target}"
+        self.epg_here(*words, ours)
+        self.epg(*words, theirs)
+        return f"{same_folders(ours, theirs, {self.source: ROOT})} files are equal"
+
+    def new(self) -> str:
+        words = ("new", "--target", "rpi_pico2_freertos_jiwy", "--model", "examples/jiwy/model", "--name", "robot")
+        self.epg_here(*words, self.work / "linux/robot")
+        self.epg(*words, self.work / "windows/robot")
+        count = same_folders(self.work / "linux/robot", self.work / "windows/robot", {self.source: ROOT})
+        return f"{count} files are equal"
+
+    def picture(self) -> str:
+        words = ("graph", "host_jiwy.tcf", "--model", "examples/jiwy/model")
+        words += ("--bindings", "examples/jiwy/jiwy.bindings.yaml", "--output")
+        self.epg_here(*words, self.work / "linux.svg")
+        self.epg(*words, self.work / "windows.svg")
+        if (self.work / "linux.svg").read_bytes() != (self.work / "windows.svg").read_bytes():
+            raise RuntimeError("the pictures differ")
+        return "the pictures are equal"
+
+    def same_text(self, *words: str) -> str:
+        """Runs a command whose output must be that of Linux, without the form of its line ends and paths."""
+        ours, theirs = (text.replace("\\", "/").split() for text in (self.epg_here(*words), self.epg(*words)))
+        if ours != theirs:
+            raise RuntimeError("\n".join(("the outputs differ", *map(str, (ours[:200], theirs[:200])))))
+        return f"{len(ours)} words are equal"
+
+    def main_job(self, generator: str) -> str:
+        """README's main job: builds and simulates JIWY, and compares the trace with that of Linux."""
+        build, ours = self.work / f"build {generator}", self.work / "linux_build"
+        if not ours.exists():
+            job = [
+                "cmake",
+                "-S",
+                str(ROOT / "examples/jiwy"),
+                "-B",
+                str(ours),
+                f"-DPython3_EXECUTABLE={sys.executable}",
+            ]
+            expect(subprocess.run(job, capture_output=True, text=True, check=False))
+            expect(
+                subprocess.run(
+                    ["cmake", "--build", str(ours), "--target", "tracking"], capture_output=True, text=True, check=False
+                )
+            )
+        began = time.monotonic()
+        python = f"-DPython3_EXECUTABLE=Z:{self.computer.python}"
+        example = self.source / "examples/jiwy"
+        expect(
+            self.computer.run(
+                "cmake.exe", "-S", example, "-B", build, "-G", generator, "-DCMAKE_C_COMPILER=gcc", python
+            )
+        )
+        configured = time.monotonic() - began
+        text = expect(self.computer.run("cmake.exe", "--build", build, "--target", "tracking"))
+        if "warning:" in text:
+            raise RuntimeError(text[-3000:])
+        count = same_folders(ours / "epg/jiwy", build / "epg/jiwy", {self.source: ROOT, build: ours})
+        rows = same_columns(ours / "trace.csv", build / "trace.csv", ())
+        # The reference is an ideal loop, calculated with the C library's sine, which differs in the last digits.
+        same_columns(ours / "tracking.csv", build / "tracking.csv", ("reference",))
+        pictures = len(list(build.glob("**/tracking.png")))
+        return f"{count} files and {rows} rows are equal; {pictures} plot; configured in {configured:.0f} s"
+
+    def described(self) -> str:
+        description = "linux_host/jiwy.json"  # what `epg generate host` has written
+        words = ("describe", self.work / description, "--plotjuggler", "--output")
+        self.epg_here(*words, self.work / "linux_description")
+        self.epg(*words, self.work / "windows_description")
+        folders = (self.work / "linux_description", self.work / "windows_description")
+        return f"{same_folders(*folders, {self.source: ROOT})} files are equal"
+
+    def simulated(self) -> str:
+        program = next((self.work / "build Ninja").glob("**/jiwy_host.exe"))
+        return self.epg(
+            "simulate", program, "--scenario", "examples/jiwy/tracking.yaml", "--output", self.work / "simulated"
+        ).splitlines()[-1]
+
+    def all(self, report: Report) -> None:
+        jiwy = ("--model", "examples/jiwy/model", "--bindings", "examples/jiwy/jiwy.bindings.yaml")
+        pico = ("--tcf", "rpi_pico2_freertos_jiwy.tcf", *jiwy)
+        report.step("epg check", partial(self.same_text, "check", "--hardware", *pico))
+        report.step("epg ports", partial(self.same_text, "ports", "examples/jiwy/model"))
+        report.step("epg explain", partial(self.same_text, "explain", "setpoint_pan", *pico))
+        report.step("epg doctor", lambda: f"{len(self.epg('doctor').splitlines())} lines")
+        for target in TARGETS:
+            report.step(f"epg generate {target}", partial(self.generated, target))
+        report.step("epg new", self.new)
+        report.step("epg graph", self.picture)
+        report.step("epg describe", self.described)
+        for generator in ("Ninja", "Ninja Multi-Config"):
+            report.step(f"cmake --build --target tracking ({generator})", partial(self.main_job, generator))
+        report.step("epg simulate", self.simulated)
+
+
+def main(arguments: Sequence[str]) -> int:
+    if not is_here():
+        print(MISSING)
+        return 77
+    folder = Path(arguments[0] if arguments else ROOT / "build/windows").resolve()
+    computer, report = Computer(folder / "computer"), Report()
+    wheels = folder / "wheel"
+    shutil.rmtree(wheels, ignore_errors=True)
+    pip = (sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "-w", str(wheels), str(ROOT))
+    report.step("Wine", computer.boot)
+    report.step("compiler", computer.install_tools)
+    report.step("Python", computer.install_python)
+    report.step("EPG's wheel", lambda: here(*pip))
+    report.step("installation", lambda: computer.install(*wheels.glob("*.whl")))
+    Run(computer, ROOT, folder / "work").all(report)
+    changed = folder / "Größe und Maß/epg"
+    shutil.rmtree(changed, ignore_errors=True)
+    clone = ("git", "-c", "core.autocrlf=true", "clone", "-q", "--no-hardlinks", str(ROOT), str(changed))
+    report.step(
+        "a checkout with Windows' line ends",
+        lambda: here(*clone),
+    )
+    run = Run(computer, changed, folder / "work Maß")
+    for target in TARGETS:
+        report.step(f"epg generate {target} from it", partial(run.generated, target))
+    report.step("cmake --build --target tracking in it", partial(run.main_job, "Ninja"))
+    computer.end()
+    print(f"{report.passed} passed, {report.failed} failed")
+    return 1 if report.failed else 0
+
+
+sys.exit(main(sys.argv[1:]))

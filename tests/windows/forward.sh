@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# Runs a tool of mingw-w64 for forward.c.  The argument is the beginning of the names of the call's files: NAME.arguments
+# holds the tool, the working folder and the arguments, each with a final 0; NAME.output and NAME.status are written.
+PATH=/usr/bin:/bin
+export LC_ALL=C.UTF-8
+job="$1"
+
+# A path of Wine as Linux sees it.  A definition (-D...) can have backslashes that belong to a text of C.
+linux() {
+    local word="${1//\\//}"
+    printf '%s' "${word//[Zz]:\//\/}"
+}
+
+mapfile -d '' -t words <"$job.arguments"
+tool="${words[0]%.exe}"
+case "$tool" in ar | ranlib) tool="gcc-$tool" ;; esac
+arguments=()
+for word in "${words[@]:2}"; do
+    case "$word" in
+    -D*) arguments+=("$word") ;;
+    @*) # a file with arguments
+        sed 's,\\,/,g; s,[Zz]:/,/,g' "$(linux "${word#@}")" >"$job.response"
+        arguments+=("@$job.response")
+        ;;
+    *) arguments+=("$(linux "$word")") ;;
+    esac
+done
+cd "$(linux "${words[1]}")" && "x86_64-w64-mingw32-$tool" "${arguments[@]}" >"$job.output" 2>&1 </dev/null
+echo "$?" >"$job.new"
+mv "$job.new" "$job.status"

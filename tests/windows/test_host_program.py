@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The host platform as a program of Windows, under Wine; and compiled for macOS.
+
+Wine's clock is that of Linux, but not its timers: the tests look at what is counted, and not at how late it is.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import shutil
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from epg.live.client import Client
+from epg.live.udp import UdpPort
+from tests.checkout import ROOT
+from tests.platforms.host.program import CONSOLE, HOST, PROGRAMS, RUNTIME, WARNINGS, platform_sources
+from tests.windows.computer import GCC, MISSING, Computer, is_here
+
+needs_wine = pytest.mark.skipif(not is_here(), reason=MISSING)
+needs_zig = pytest.mark.skipif(
+    importlib.util.find_spec("ziglang") is None, reason="ziglang is not installed: pip install ziglang"
+)
+
+
+def options(system: str) -> list[str]:
+    links = HOST / "src/links"
+    folders = [RUNTIME / "include", HOST / "include", HOST / "src", CONSOLE, links / "realtime", links / system]
+    defines = ["-DEPG_HOST_TARGET=epg_host_application", "-D_POSIX_C_SOURCE=200809L"]
+    return ["-std=c11", *WARNINGS, *defines, *(f"-I{folder}" for folder in folders)]
+
+
+@pytest.fixture(scope="module")
+def computer(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Computer]:
+    made = Computer(tmp_path_factory.mktemp("windows"))
+    made.boot()
+    yield made
+    made.end()
+    shutil.rmtree(made.prefix, ignore_errors=True)
+
+
+@pytest.fixture(scope="module")
+def program(computer: Computer) -> Path:
+    """JIWY, built by CMake of this computer for Windows."""
+    build = computer.folder / "build"
+    settings = ("-DCMAKE_SYSTEM_NAME=Windows", f"-DCMAKE_C_COMPILER={GCC}", f"-DPython3_EXECUTABLE={sys.executable}")
+    for command in (["-S", str(ROOT / "examples/jiwy"), "-B", str(build), *settings], ["--build", str(build), "-j2"]):
+        done = subprocess.run(["cmake", *command], capture_output=True, text=True, check=False)
+        assert done.returncode == 0 and "warning:" not in done.stderr, done.stderr
+    return build / "jiwy_host.exe"
+
+
+@needs_wine
+def test_it_compiles_without_a_warning(tmp_path: Path) -> None:
+    sources = [PROGRAMS / "motor.c", *platform_sources(system="windows")]
+    command = [GCC, *options("windows"), "-fsyntax-only", *map(str, sources)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@needs_wine
+def test_simulated_time(computer: Computer, program: Path, tmp_path: Path) -> None:
+    done = computer.run(program, "--duration", "2", "--statistics", tmp_path / "statistics.json")
+    assert done.returncode == 0, done.stderr
+    statistics = json.loads((tmp_path / "statistics.json").read_text())
+    assert (statistics["mode"], statistics["cycles"], statistics["missed"]) == ("simulated", 2000, 0)
+
+
+@needs_wine
+def test_real_time(computer: Computer, program: Path, tmp_path: Path) -> None:
+    """Each tick is a cycle or is counted as missed; lateness is measured."""
+    done = computer.run(program, "--realtime", "--duration", "2", "--statistics", tmp_path / "statistics.json")
+    assert done.returncode == 0, done.stderr
+    statistics = json.loads((tmp_path / "statistics.json").read_text())
+    assert (statistics["mode"], statistics["scheduler"]) == ("realtime", "TIME_CRITICAL")
+    assert statistics["cycles"] + statistics["missed"] == 2000
+    assert statistics["cycles"] > 200
+    assert 0 < statistics["lateness_mean"] < 1
+    assert 2 <= statistics["wall_time"] < 4
+
+
+@needs_wine
+def test_the_console_on_standard_input(computer: Computer, program: Path) -> None:
+    """Commands are answered, and the end of the input ends the program."""
+    process = computer.start(program, "--realtime", "--console", stdin=subprocess.PIPE)
+    output, errors = process.communicate("version\nstats\n", timeout=60)
+    assert process.returncode == 0, errors
+    assert "ok version" in output and "ok stats" in output
+    assert errors == ""
+
+
+@needs_wine
+def test_the_console_by_udp(computer: Computer, program: Path) -> None:
+    """A program of Linux uses the target.  The second one is told that the port is taken."""
+    process = computer.start(program, "--realtime", "--console-udp", "127.0.0.1:0", "--duration", "20")
+    assert process.stderr is not None
+    line = process.stderr.readline()
+    address = line.strip().rpartition("udp:127.0.0.1:")[2]
+    second = computer.run(program, "--realtime", "--console-udp", f"127.0.0.1:{address}")
+    assert "another program uses this port" in second.stderr, second.stderr
+    with UdpPort(Path(f"udp:127.0.0.1:{address}")) as port:
+        client = Client(port)
+        try:
+            assert client.description.name == "jiwy"
+            assert any(word.startswith("cycles=") for answer in client.command("stats") for word in answer.split())
+        finally:
+            client.stop()
+    process.kill()
+    threading.Thread(target=process.communicate).start()
+
+
+@needs_wine
+def test_there_is_no_pseudo_terminal(computer: Computer, program: Path) -> None:
+    done = computer.run(program, "--realtime", "--console-pty", "port")
+    assert done.returncode == 1
+    assert done.stderr.splitlines() == [
+        "port: error: Windows has no pseudo-terminals",
+        "hint: --console-udp 127.0.0.1:7000",
+    ]
+
+
+@needs_zig
+@pytest.mark.parametrize("machine", ["aarch64-macos", "x86_64-macos"])
+def test_it_compiles_for_macos(machine: str, tmp_path: Path) -> None:
+    sources = [PROGRAMS / "motor.c", *platform_sources(system="elsewhere")]
+    command = [sys.executable, "-m", "ziglang", "cc", "-target", machine, *options("elsewhere"), *map(str, sources)]
+    done = subprocess.run([*command, "-o", str(tmp_path / "motor")], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
