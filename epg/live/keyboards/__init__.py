@@ -20,4 +20,4 @@ class Keyboard(Protocol):
 
 
 def keyboard() -> Keyboard:
-    return cast(Keyboard, importlib.import_module(f"epg.live.keyboards.{os.name}").Keyboard())
+    return cast(Keyboard, importlib.import_module(f"epg.live.keyboards.keys_{os.name}").keyboard())

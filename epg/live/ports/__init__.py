@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Serial ports of each system: a module has the name of its system, ``sys.platform``, and the functions of ``System``.
+"""Serial ports: a module has the name of its system, ``sys.platform``, and the functions of :class:`PortsOfSystem`.
 
 It is imported only when a port is opened or the ports are listed, so that EPG runs on systems that are not here.
 """
@@ -41,7 +41,7 @@ class Device(Protocol):
     def close(self) -> None: ...
 
 
-class System(Protocol):
+class PortsOfSystem(Protocol):
     """The functions of a system's module."""
 
     def open_device(self, path: Path, baud: int) -> Device: ...
@@ -50,13 +50,13 @@ class System(Protocol):
     def program_with(self, path: Path) -> str: ...
 
 
-def system() -> System:
+def system() -> PortsOfSystem:
     """The functions of this system.
 
     :raises PortError: there are none
     """
     try:
-        return cast(System, importlib.import_module(f"epg.live.ports.{sys.platform}"))
+        return cast(PortsOfSystem, importlib.import_module(f"epg.live.ports.{sys.platform}"))
     except ImportError as error:
         raise PortError("EPG does not use ports on this system", "start it on Linux or Windows") from error
 

@@ -9,14 +9,14 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from epg.live.ports import UsbPort
-from epg.live.ports.posix import Terminal
+from epg.live.ports.posix import PosixPort
 
 _NODE = re.compile(r"^(?P<depth>[ |]*)\+-o (?P<name>.*?)(?:@\S+)?  <")
 _PROPERTY = re.compile(r'^[ |]*"(?P<name>[^"]+)" = (?P<value>.*?)\s*$')
 
 
-def open_device(path: Path, baud: int) -> Terminal:
-    return Terminal(path, baud, program_with, "/dev/cu.usbmodem1101")
+def open_device(path: Path, baud: int) -> PosixPort:
+    return PosixPort(path, baud, program_with, "/dev/cu.usbmodem1101")
 
 
 def list_ports() -> Iterator[UsbPort]:

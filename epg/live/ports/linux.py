@@ -8,15 +8,15 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from epg.live.ports import UsbPort
-from epg.live.ports.posix import Terminal
+from epg.live.ports.posix import PosixPort
 
 DEVICES = Path("/sys/class/tty")
 """The folder in which Linux has a folder for each terminal."""
 _BY_ID = Path("/dev/serial/by-id")
 
 
-def open_device(path: Path, baud: int) -> Terminal:
-    return Terminal(path, baud, program_with, "/dev/ttyACM0")
+def open_device(path: Path, baud: int) -> PosixPort:
+    return PosixPort(path, baud, program_with, "/dev/ttyACM0")
 
 
 def list_ports() -> Iterator[UsbPort]:

@@ -16,7 +16,7 @@ from pathlib import Path
 from epg.live.ports import PortError, full, gone, missing, wrong_rate
 
 
-class Terminal:
+class PosixPort:
     """An open terminal.  Messages name an ``example`` of a port, and the program that has this one, by ``user_of``."""
 
     def __init__(self, path: Path, baud: int, user_of: Callable[[Path], str], example: str) -> None:

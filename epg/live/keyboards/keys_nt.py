@@ -13,11 +13,11 @@ _OUTPUT = 0xFFFFFFF5  # STD_OUTPUT_HANDLE, -11
 _SEQUENCES = 0x4  # ENABLE_VIRTUAL_TERMINAL_PROCESSING
 
 
-class Keyboard:
+class WindowsKeyboard:
     def __init__(self) -> None:
         self._keys: Any = importlib.import_module("msvcrt")
 
-    def __enter__(self) -> Keyboard:
+    def __enter__(self) -> WindowsKeyboard:
         kernel: Any = ctypes.CDLL("kernel32")
         kernel.GetStdHandle.restype = ctypes.c_void_p
         output, mode = ctypes.c_void_p(kernel.GetStdHandle(_OUTPUT)), ctypes.c_uint32()
@@ -42,3 +42,7 @@ class Keyboard:
 
     def __exit__(self, *_: object) -> None:
         pass
+
+
+def keyboard() -> WindowsKeyboard:
+    return WindowsKeyboard()

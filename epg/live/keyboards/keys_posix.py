@@ -10,8 +10,8 @@ import termios
 import tty
 
 
-class Keyboard:
-    def __enter__(self) -> Keyboard:
+class PosixKeyboard:
+    def __enter__(self) -> PosixKeyboard:
         self._file = sys.stdin.fileno()
         try:
             self._before = termios.tcgetattr(self._file)
@@ -31,3 +31,7 @@ class Keyboard:
             termios.tcsetattr(self._file, termios.TCSADRAIN, self._before)
         except termios.error as error:
             raise OSError(*error.args) from error
+
+
+def keyboard() -> PosixKeyboard:
+    return PosixKeyboard()
