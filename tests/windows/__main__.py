@@ -17,7 +17,8 @@ from functools import partial
 from pathlib import Path
 
 from tests.checkout import ROOT
-from tests.windows.computer import MISSING, Computer, is_here
+from tests.waiting import until
+from tests.windows.computer import HERE, MISSING, Computer, is_here
 
 TARGETS = ("host", "rpi_pico2_freertos", "nucleo_h743zi_bare_metal", "rpi_pico_zephyr")
 """The targets for which sources are generated."""
@@ -177,6 +178,30 @@ class Run:
             "simulate", program, "--scenario", "examples/jiwy/tracking.yaml", "--output", self.work / "simulated"
         ).splitlines()[-1]
 
+    def ports(self) -> str:
+        """The list of ports, from keys of the registry like those of a composite device of Windows."""
+        text = expect(self.computer.run(self.computer.python, HERE / "write_registry.py"))
+        if "device='USB Serial Device (COM12)', vendor='2e8a', serial='E6614103E7174A21'" not in text:
+            raise RuntimeError(text)
+        return "COM12 has the serial number of its parent"
+
+    def live(self) -> str:
+        """``epg live`` at COM7, which is the terminal of a host program of this computer."""
+        program, port = self.work / "linux_build/jiwy_host", self.work / "port"
+        command = [str(program), "--realtime", "--console-pty", str(port), "--duration", "600"]
+        with subprocess.Popen(command, stdout=subprocess.DEVNULL) as target:
+            until(port.exists, "the target has no port")
+            link = self.computer.prefix / "dosdevices/com7"
+            link.unlink(missing_ok=True)
+            link.symlink_to(port.resolve())
+            try:
+                text = self.epg("live", "COM7", "--duration", "60", "--every", "1", "--csv", self.work / "rows.csv")
+            finally:
+                target.kill()
+        if ", 0 dropped, 0 damaged" not in text:
+            raise RuntimeError(text)
+        return text.strip()
+
     def all(self, report: Report) -> None:
         jiwy = ("--model", "examples/jiwy/model", "--bindings", "examples/jiwy/jiwy.bindings.yaml")
         pico = ("--tcf", "rpi_pico2_freertos_jiwy.tcf", *jiwy)
@@ -192,6 +217,8 @@ class Run:
         for generator in ("Ninja", "Ninja Multi-Config"):
             report.step(f"cmake --build --target tracking ({generator})", partial(self.main_job, generator))
         report.step("epg simulate", self.simulated)
+        report.step("ports of the registry", self.ports)
+        report.step("epg live COM7 for 60 s", self.live)
 
 
 def main(arguments: Sequence[str]) -> int:
