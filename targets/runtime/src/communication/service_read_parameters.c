@@ -159,7 +159,8 @@ static bool has_new_prefix(const epg_service_state_t *state, size_t index)
     const size_t length = prefix_of(name);
     for (size_t i = index; i > 0; i--) {
         const char *before = state->texts[i - 1].name;
-        if (state->copy[i - 1] > (double)NOT_LISTED && prefix_of(before) == length && strncmp(before, name, length) == 0) {
+        if (state->copy[i - 1] > (double)NOT_LISTED && prefix_of(before) == length &&
+            strncmp(before, name, length) == 0) {
             return false;
         }
     }
