@@ -49,7 +49,7 @@ SILENCE = 20.0
 
 @dataclass(frozen=True)
 class Outcome:
-    """One test as conftest.py logged it."""
+    """One test as tests/hooks.py logged it."""
 
     test: str
     seconds: float

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from conftest import PRIORITY
+from tests.hooks import PRIORITY
 from tests.run import (
     BEGINNING,
     Outcome,
@@ -69,7 +69,7 @@ def test_an_unknown_tier_is_refused() -> None:
 
 
 def test_every_line_of_the_table_names_something_that_exists() -> None:
-    """conftest.py also looks for the parameters, in the files that it collects."""
+    """tests/hooks.py also looks for the parameters, in the files that it collects."""
     for path in [*table().tiers, *table().real_time, *table().alone]:
         file, _, function = path.partition("[")[0].partition("::")
         assert (ROOT / file).exists(), path
@@ -143,7 +143,7 @@ def test_a_file_in_real_time_and_a_file_alone_have_tests_of_their_own() -> None:
 
 def test_programs_that_run_in_real_time_have_a_better_priority_if_the_user_may_give_it() -> None:
     code = (
-        "import os, sys, conftest as it\n"
+        "import os, sys, tests.hooks as it\n"
         "it.prefer(set(sys.argv[1:]), it.Table({}, frozenset({'a', 'b'})))\n"
         "print(os.getpriority(os.PRIO_PROCESS, 0))"
     )
@@ -254,7 +254,7 @@ def test_a_test_runs_alone_by_the_command_that_is_printed() -> None:
 
 
 def test_the_environment_of_the_caller_does_not_reach_the_programs_that_tests_start() -> None:
-    code = "import os, conftest; print(sorted(os.environ))"
+    code = "import os, tests.hooks; print(sorted(os.environ))"
     others = ["MAKE_TERMOUT", "MAKEFLAGS", "CLICOLOR_FORCE", "CFLAGS", "CMAKE_GENERATOR", "PYTHONHASHSEED"]
     caller = {**os.environ, **dict.fromkeys(others, "1"), "EPG_PATH": "1"}
     caller["PYTHONPATH"] = os.pathsep.join([str(ROOT), *sys.path[1:]])

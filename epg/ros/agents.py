@@ -16,7 +16,7 @@ from dataclasses import field
 from epg.generator.dataclass import dataclass
 from epg.generator.diagnostics import Diagnostics, did_you_mean
 from epg.generator.source import Span
-from epg.runs.robot import HOST_SERIAL, Robot, UsbDevice, report_damaged
+from epg.runs.robot import HOST_SERIAL, Robot, RobotUsb, report_damaged
 
 DEFAULT_BAUD_RATE = 115200
 """The default baud rate of a tty.  A board on USB accepts any rate."""
@@ -123,9 +123,7 @@ def _warn_of_no_agent(robot: Robot, diagnostics: Diagnostics) -> None:
     diagnostics.warning("no-agent-needed", Span(str(robot.file)), message, hint=hint)
 
 
-def _on_usb(
-    robot: Robot, program: str, usb: UsbDevice, serials: Sequence[str], diagnostics: Diagnostics
-) -> list[Agent]:
+def _on_usb(robot: Robot, program: str, usb: RobotUsb, serials: Sequence[str], diagnostics: Diagnostics) -> list[Agent]:
     """The agents for the boards with these serial numbers, which all run the target ``robot``."""
     if not serials:
         message = f"'{robot.name}' uses USB: the serial number of its board is not known"

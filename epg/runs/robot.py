@@ -61,7 +61,7 @@ class RobotTopic:
 
 
 @dataclass(frozen=True)
-class UsbDevice:
+class RobotUsb:
     """The USB device of a target.
 
     ``name`` is its manufacturer and its product in the names of udev, such as ``Raspberry_Pi_Pico``.  ``vendor`` is its
@@ -93,7 +93,7 @@ class Robot:
     agent: str | None
     """The ROS 2 package and program of its agent, "" if it needs none.  None if an older EPG wrote the description."""
     transport: str | None
-    usb: UsbDevice | None
+    usb: RobotUsb | None
     """None if its description does not have all names and numbers, as those of older EPGs and of boards with Zephyr."""
     subscriptions: tuple[RobotTopic, ...]
     publications: tuple[RobotTopic, ...]
@@ -226,7 +226,7 @@ def robot_of(file: Path, data: dict[str, Any]) -> Robot:
     )
 
 
-def _usb_device(data: _Part) -> UsbDevice | None:
+def _usb_device(data: _Part) -> RobotUsb | None:
     """The USB device, or None if a name or number is missing that its manufacturer or its port layer gives to it."""
     names = [data.text_of(key, "") for key in ("manufacturer", "product")]
     vendor, digits = data.whole_of("vendor_id", 0xFFFF), data.whole_of("serial_digits", 64)
@@ -234,7 +234,7 @@ def _usb_device(data: _Part) -> UsbDevice | None:
     if "" in names or vendor is None or digits is None:
         return None
     name = "_".join(udev_name(text) for text in names)
-    return UsbDevice(name, f"{vendor:04x}", udev_name(serial.text()) if serial else None, digits)
+    return RobotUsb(name, f"{vendor:04x}", udev_name(serial.text()) if serial else None, digits)
 
 
 def udev_name(text: str) -> str:

@@ -163,7 +163,9 @@ def test_a_description_of_an_older_epg_is_explained(
     said = capsys.readouterr().err
     assert message in said and f"hint: {hint}" in said
     assert main([*launch, "--device", "jiwy=/dev/ttyACM0"]) == (1 if missing == "agent" else 0)
-    assert main(["describe", str(file), "--output", str(tmp_path / "plots")]) == 0, "only agents need it"
+    assert main(["describe", str(file), "--plotjuggler", "--output", str(tmp_path / "plots")]) == 0, (
+        "only agents need it"
+    )
 
 
 def test_two_agents_on_one_port_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -239,7 +239,7 @@ def test_agents_of_a_system(folder: Path, capsys: pytest.CaptureFixture[str]) ->
     text = SYSTEM.replace("bindings.yaml}", f"bindings.yaml, serial: {numbers[0]}}}")
     path.write_text(text.replace("count: 2,", f"count: 2, serial: [{numbers[1]}, AB],"))
     assert main(["launch", str(path), "--output", str(folder)]) == 1
-    assert "'AB' is not the serial number of a Pico" in capsys.readouterr().err
+    assert "'AB' is not the serial number of a board rpi_pico" in capsys.readouterr().err
     assert main(["launch", "--json", str(path), "--board", f"next_2={numbers[2]}", "--output", str(folder)]) == 0
     agents = json.loads(capsys.readouterr().out)["agents"]
     assert [agent["nodes"] for agent in agents] == [
