@@ -41,7 +41,7 @@ def report_unwired(configuration: Configuration, diagnostics: Diagnostics) -> No
 def _hint(component: Component, pins: Mapping[str, str], configuration: Configuration) -> str:
     """The hint to write ``pins``.  They are numbers if the user has written a number."""
     names = map_of(component.node, "pins")
-    if any(isinstance(name, int) for name in names.values()):
+    if any(isinstance(node.value, int) for node in names.values()):
         pins = {name: pin if name in names else configuration.target.board.pin_name(pin) for name, pin in pins.items()}
     text = ", ".join(f"{name}: {pin}" for name, pin in pins.items())
     sentence = f"write 'pins: {{{text}}}' in '{component.name}', or the pins to which it is wired"
