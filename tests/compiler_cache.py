@@ -8,8 +8,11 @@ the same inputs is therefore compiled once.  Its output, warnings and exit statu
 
 from __future__ import annotations
 
+import os
 import shutil
-from collections.abc import MutableMapping
+import subprocess
+from collections.abc import MutableMapping, Sequence
+from pathlib import Path
 
 from epg.generator.bootstrap import cache_folder
 
@@ -24,3 +27,14 @@ def share_objects(environment: MutableMapping[str, str]) -> None:
         environment.update(CCACHE_BASEDIR=str(folder), CCACHE_NOHASHDIR="1")
         # Generated headers are younger than a second.  ccache compares their contents, too.
         environment.update(CCACHE_SLOPPINESS="include_file_ctime,include_file_mtime")
+
+
+def run_compiler(command: Sequence[str], folder: Path) -> subprocess.CompletedProcess[str]:
+    """Runs a compiler in ``folder``, with ccache where CMake projects use it.
+
+    Names of files in ``folder`` become relative to it, so that another copy of the folder shares the objects.
+    """
+    launcher = os.environ.get("CMAKE_C_COMPILER_LAUNCHER")
+    environment = {**os.environ, "CCACHE_BASEDIR": str(folder)}
+    command = [*([launcher] if launcher else []), *(part.replace(f"{folder}/", "") for part in command)]
+    return subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder, env=environment)

@@ -11,6 +11,8 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from tests.compiler_cache import run_compiler
+
 ROOT = Path(__file__).resolve().parents[2]
 RUNTIME = ROOT / "targets" / "runtime"
 COMPONENTS = ROOT / "targets" / "components"
@@ -35,8 +37,13 @@ def compile_program(
 
     ``sources`` may contain the objects of :func:`compile_objects`.
     """
-    command = [*_compiler(options, defines, includes), *(str(source) for source in sources)]
-    _run_compiler([*command, "-pthread", "-lm", "-o", str(output)])
+    return build_program(_compiler(options, defines, includes), output, sources)
+
+
+def build_program(compiler: Sequence[str], output: Path, sources: Sequence[Path]) -> Path:
+    """Compiles and links the executable ``output``; ``compiler`` is the command with its options."""
+    objects = _objects(compiler, output.with_name(f"{output.name}.objects"), sources)
+    _run_compiler([*compiler, *map(str, objects), "-pthread", "-lm", "-o", str(output)])
     return output
 
 
@@ -48,16 +55,22 @@ def compile_objects(
     includes: Sequence[Path] = (),
 ) -> list[Path]:
     """Compiles each of ``sources`` into an object in ``folder``, for several programs."""
-    folder.mkdir()
-    command = [*_compiler(options, (), includes), "-c", "-pthread"]
+    return _objects(_compiler(options, (), includes), folder, sources)
 
-    def compile_one(source: Path) -> Path:
-        output = folder / f"{source.parent.name}_{source.stem}.o"
-        _run_compiler([*command, str(source), "-o", str(output)])
+
+def _objects(compiler: Sequence[str], folder: Path, sources: Sequence[Path]) -> list[Path]:
+    """The objects of the C files among ``sources``, and the other ``sources``.  ccache keeps single objects only."""
+    folder.mkdir(exist_ok=True)
+
+    def compile_one(number: int, source: Path) -> Path:
+        if source.suffix != ".c":
+            return source
+        output = folder / f"{number}_{source.stem}.o"
+        _run_compiler([*compiler, "-pthread", "-c", str(source), "-o", str(output)])
         return output
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return list(pool.map(compile_one, sources))
+        return list(pool.map(compile_one, range(len(sources)), sources))
 
 
 def _compiler(options: Sequence[str], defines: Sequence[str], includes: Sequence[Path]) -> list[str]:
@@ -69,7 +82,7 @@ def _compiler(options: Sequence[str], defines: Sequence[str], includes: Sequence
 
 
 def _run_compiler(command: Sequence[str]) -> None:
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    done = run_compiler(command, ROOT)
     assert done.returncode == 0, done.stderr
 
 

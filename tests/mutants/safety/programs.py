@@ -15,6 +15,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from tests.checkout import ROOT
+from tests.compiler_cache import run_compiler
 from tests.runtime.program import COMPONENTS, FAKES, PORT, RUNTIME, component_sources, names_in, runtime_sources
 from tests.runtime.program import SOURCES as RUNTIME_TESTS
 
@@ -60,10 +61,11 @@ class Programs:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
+        (folder / "root").symlink_to(ROOT)
         self._tests: dict[str, Path] = {}
         outputs = [folder / f"{source.parent.name}_{source.stem}.o" for source in LIBRARY]
         with ThreadPoolExecutor() as pool:
-            errors = "".join(pool.map(_compile, LIBRARY, outputs))
+            errors = "".join(pool.map(self._compile, LIBRARY, outputs))
         assert not errors, errors
         self._library = folder / "library.a"
         archiver = shutil.which("ar") or "ar"
@@ -92,17 +94,31 @@ class Programs:
             changed, objects = tree / test.relative_to(ROOT), []
             _write(changed, test.read_text(encoding="utf-8"))
         output = self._folder / "mutated.o"
-        error = _compile(changed, output, tree)
+        error = self._compile(changed, output, tree)
         if error:
             raise ValueError(f"{mutant.file}: the mutant does not compile: {error}")
         program = self._folder / "mutated"
         self._link(program, [*objects, output])
         return self._run(program, mutant.test)
 
+    def _compile(self, source: Path, output: Path, tree: Path | None = None) -> str:
+        """Compiles a source into an object, and returns the compiler's messages if it fails.
+
+        ``tree`` has the mutated file, which is found before that of the project.  All names are relative to the folder,
+        so that ccache knows the object again in another one.
+        """
+        root = self._folder / "root"
+        mutated = [] if tree is None else [tree / folder.relative_to(ROOT) for folder in INCLUDES]
+        folders = [*mutated, *(root / folder.relative_to(ROOT) for folder in INCLUDES)]
+        source = root / source.relative_to(ROOT) if source.is_relative_to(ROOT) else source
+        options = [*FLAGS, "-O0", *(f"-I{folder}" for folder in folders)]
+        done = run_compiler([COMPILER, *options, "-c", str(source), "-o", str(output)], self._folder)
+        return done.stderr if done.returncode else ""
+
     def _test_object(self, name: str) -> Path:
         if name not in self._tests:
             output = self._folder / f"{name}_tests.o"
-            error = _compile(PROGRAMS[name], output)
+            error = self._compile(PROGRAMS[name], output)
             assert not error, error
             self._tests[name] = output
         return self._tests[name]
@@ -118,19 +134,6 @@ class Programs:
 
 def names_of(name: str) -> list[str]:
     return names_in(PROGRAMS[name])
-
-
-def _compile(source: Path, output: Path, tree: Path | None = None) -> str:
-    """Compiles a source into an object, and returns the compiler's messages if it fails.
-
-    ``tree`` has the mutated file, which is found before that of the project.
-    """
-    mutated = [] if tree is None else [tree / folder.relative_to(ROOT) for folder in INCLUDES]
-    folders = [*mutated, *INCLUDES]
-    options = [*FLAGS, "-O0", *(f"-I{folder}" for folder in folders)]
-    command = [COMPILER, *options, "-c", str(source), "-o", str(output)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    return done.stderr if done.returncode else ""
 
 
 def _write(path: Path, text: str) -> None:

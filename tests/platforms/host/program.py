@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from tests.runtime.program import build_program
+
 TARGETS = Path(__file__).resolve().parents[3] / "targets"
 HOST = TARGETS / "platforms" / "host"
 RUNTIME = TARGETS / "runtime"
@@ -39,10 +41,7 @@ def compile_program(
     includes += [HOST / "src/links/realtime", HOST / "src/links/linux"]
     command = [compiler, "-std=c11", "-O1", "-g", *WARNINGS, *sanitize]
     command += [f"-I{folder}" for folder in includes] + [f"-D{define}" for define in defines]
-    command += [str(source) for source in sources] + ["-pthread", "-lm", "-o", str(output)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    return output
+    return build_program(command, output, sources)
 
 
 def platform_sources(*, main: bool = True, system: str = "linux") -> list[Path]:
