@@ -207,8 +207,7 @@ def draw_wiring(
     assert layout is not None
     sides = terminals(target, components, assignments)
     frame = _frame(target, layout)
-    edges = [Edge(each, places_of(layout, each), frame.wide, getattr(frame, each)) for each in ("top", "bottom")]
-    edges = [edge for edge in edges if edge.contacts]
+    edges = _edges(layout, frame)
     detours = detours_of(layout, edges, sides)
     soldered = {side: moved(side, ways, sides, frame.pitch) for side, ways in detours.items()}
     others = elsewhere(target, components, assignments)
@@ -226,12 +225,22 @@ def draw_wiring(
         seen.update(pad.state for pad in pads)
         _contacts(side, pads)
         _row_titles(side)
-        other = {each.component for key, there in soldered.items() if key != name for each in there}
-        _soldered(side, _parts(components, soldered[name], other))
+        _soldered(side, _parts(components, soldered[name], _components_beside(soldered, name)))
     driven = any(drives(components[each.component]) for contents in soldered.values() for each in contents)
     rules = _rules(layout, others, driven=driven)
     _notes(picture, _marks(layout, seen, choice), rules)
     return picture.render()
+
+
+def _components_beside(soldered: Mapping[str, Sequence[Terminal]], side: str) -> set[str]:
+    """The components that have terminals on the side opposite to ``side``."""
+    return {each.component for name, there in soldered.items() if name != side for each in there}
+
+
+def _edges(layout: Layout, frame: _Frame) -> list[Edge]:
+    """The top and the bottom, if they have contacts."""
+    edges = [Edge(each, places_of(layout, each), frame.wide, getattr(frame, each)) for each in ("top", "bottom")]
+    return [edge for edge in edges if edge.contacts]
 
 
 def _frame(target: Target, layout: Layout) -> _Frame:

@@ -76,20 +76,10 @@ def plan_agents(robots: Sequence[Robot], setup: AgentSetup, diagnostics: Diagnos
     agents: list[Agent] = []
     by_udp: dict[str, list[Robot]] = {}
     for robot in robots:
-        if robot.agent is None:
-            problem = "'communication.agent' is missing, as in files of an older EPG"
-            report_damaged(Span(str(robot.file)), problem, diagnostics)
-        elif not robot.agent:
-            if robot.name not in setup.programs:
-                _warn_of_no_agent(robot, diagnostics)
-        elif robot.name in setup.devices:
-            agents += [_on_device(robot, robot.agent, device, diagnostics) for device in setup.devices[robot.name]]
-        elif robot.transport == "usb" and robot.usb is not None:
-            agents += _on_usb(robot, robot.agent, robot.usb, setup.boards.get(robot.name, ()), diagnostics)
-        elif robot.transport == "udp":
+        if robot.agent and robot.name not in setup.devices and robot.transport == "udp":
             by_udp.setdefault(robot.agent, []).append(robot)
         else:
-            _report_no_device(robot, diagnostics)
+            agents += _agents_at_ttys(robot, setup, diagnostics)
     port = str(setup.port)
     for program, served in by_udp.items():
         agents.append(Agent(f"agent_udp_{port}", program, ("udp4", "-p", port), None, None, tuple(served)))
@@ -98,6 +88,23 @@ def plan_agents(robots: Sequence[Robot], setup: AgentSetup, diagnostics: Diagnos
     if not agents and not setup.programs and not diagnostics.has_errors:
         diagnostics.error("nothing-to-launch", Span("command line"), "none of these targets needs an agent")
     return agents
+
+
+def _agents_at_ttys(robot: Robot, setup: AgentSetup, diagnostics: Diagnostics) -> list[Agent]:
+    """The agents of a robot at ttys of this computer; none, after a message, if it needs no agent or has no tty."""
+    if robot.agent is None:
+        problem = "'communication.agent' is missing, as in files of an older EPG"
+        report_damaged(Span(str(robot.file)), problem, diagnostics)
+    elif not robot.agent:
+        if robot.name not in setup.programs:
+            _warn_of_no_agent(robot, diagnostics)
+    elif robot.name in setup.devices:
+        return [_on_device(robot, robot.agent, device, diagnostics) for device in setup.devices[robot.name]]
+    elif robot.transport == "usb" and robot.usb is not None:
+        return _on_usb(robot, robot.agent, robot.usb, setup.boards.get(robot.name, ()), diagnostics)
+    else:
+        _report_no_device(robot, diagnostics)
+    return []
 
 
 def _refuse_equal_names(robots: Sequence[Robot], diagnostics: Diagnostics) -> None:
