@@ -15,7 +15,7 @@ A file with the name of a composed configuration is read instead of it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from epg.generator.dataclass import dataclass
@@ -53,10 +53,27 @@ def composed_tcf(name: str, roots: Sequence[Path]) -> FoundTcf | None:
     return None
 
 
-def robot_names(roots: Iterable[Path]) -> list[str]:
-    """The robots: each has a file of its name in its folder."""
-    folders = {folder for root in roots for folder in (root / "robots").glob("*/")}
-    return sorted({folder.name for folder in folders if is_file(folder / f"{folder.name}.tcf")})
+def robot_names(roots: Sequence[Path]) -> list[str]:
+    """The robots without a target: the file ``<robot>.tcf`` of each states none, nor do the robots that it extends."""
+    files: dict[str, Path] = {}
+    for root in roots:
+        for folder in (root / "robots").glob("*/"):
+            if is_file(file := folder / f"{folder.name}.tcf"):
+                files.setdefault(file.name, file)
+    return sorted(name.removesuffix(".tcf") for name in files if _has_no_target(name, files))
+
+
+def _has_no_target(name: str, files: Mapping[str, Path]) -> bool:
+    read: set[str] = set()
+    while name in files and name not in read:
+        read.add(name)
+        node = load_yaml(files[name], Diagnostics())
+        if node is None or not node.is_mapping or "target" in node:
+            return False
+        if "extends" not in node:
+            return True
+        name = str(node["extends"].value)
+    return False
 
 
 def composed_names(targets: Iterable[str], roots: Sequence[Path]) -> set[str]:
