@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Templates of platforms have the variables that ``docs/adding-a-platform.md`` lists."""
+"""``docs/adding-a-platform.md`` lists the variables of templates of platforms, and what ``epg/plant.h`` declares."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ from epg.generator.project import Request, load_application
 from epg.generator.source import Span
 from tests.errors.test_errors import HERE as CASES
 
-PAGE = CASES.parent.parent / "docs" / "adding-a-platform.md"
+ROOT = CASES.parent.parent
+PAGE = ROOT / "docs" / "adding-a-platform.md"
 
 
 @pytest.fixture(scope="module")
@@ -64,3 +65,11 @@ def test_a_template_can_use_it(expression: str, variables: dict[str, Any]) -> No
     expression = expression.replace('clocks["timers"]', 'clocks["apb1_timers"]')
     value = eval(expression, {}, variables)
     assert value is not None
+
+
+def test_the_header_of_plants_is_listed_whole() -> None:
+    text = (ROOT / "targets/runtime/include/epg/plant.h").read_text(encoding="utf-8")
+    code = re.sub(r" ?/[*].*?[*]/", "", text, flags=re.DOTALL)
+    left_out = ('extern "C" {', "}", "")
+    lines = [line.rstrip() for line in code.splitlines() if not line.startswith("#") and line.strip() not in left_out]
+    assert "\n".join(["```c", *lines, "```"]) in PAGE.read_text(encoding="utf-8")
