@@ -142,18 +142,20 @@ def test_disable_always_acts_and_nothing_enables_afterwards(target: UdpTarget, b
 
 
 def test_a_lease_holds_or_ends_safely(target: UdpTarget, bad: Path) -> None:
+    """The network can lose all messages of one lease, but hardly those of the first lease of four enablings."""
     with client_of(bad) as client:
         client.disable()
-        assert client.enable() == ["ok enable"]
-        let_pass(client, 4)
-        state = client.command("stats")[0]
-        assert "enabled=1 leased=1 fault=none" in state or "enabled=0 fault=operator" in state, state
+        for _ in range(4):
+            with contextlib.suppress(CommandRefused):  # the loss of the answer's number has disabled the target
+                client.enable()
+            let_pass(client, 1)
+            state = client.command("stats")[0]
+            assert "enabled=1 leased=1 fault=none" in state or "enabled=0 fault=operator" in state, state
+            client.disable()
     trace = target.end()
-    first = next(index for index, row in enumerate(trace) if not row["enabled"])
-    on = [row for row in trace[first:] if row["enabled"]]
-    assert len(on) > 350, "it stays enabled for longer than one lease"
-    off = trace[trace.index(on[-1]) + 1 :]
-    assert all(row[DUTY] == 0 for row in off)
+    disabled = list(dropwhile(lambda row: row["enabled"], trace))
+    assert max(pulses(disabled, "enabled")) > 350, "it stays enabled for longer than one lease"
+    assert all(row[DUTY] == 0 for row in disabled if not row["enabled"])
 
 
 def test_a_network_that_loses_everything_is_noticed(target: UdpTarget) -> None:

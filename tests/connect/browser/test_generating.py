@@ -96,7 +96,7 @@ def test_generates_shows_errors_and_cancels(jiwy: Project, open_page: Open) -> N
     source.write_text(original + "\n", encoding="utf-8")
     generate.click()
     page.get_by_role("button", name="Cancel", exact=True).click()
-    page.locator(".outcome.cancelled").wait_for(timeout=PATIENT)
+    page.locator(".outcome.cancelled", has_text="Cancelled.").wait_for(timeout=PATIENT)  # beside that of the program
     source.write_text(original, encoding="utf-8")
 
 
