@@ -34,6 +34,7 @@ from .program import (
 TARGETS = ROOT / "targets"
 HOST = TARGETS / "platforms" / "host"
 HARNESS = SOURCES / "templates.c"
+PORT = ("port", "clock", "monotonic", "elsewhere/system", "serial", "store")
 PWM = {"prescaler": 1, "top": 6249}
 
 
@@ -290,7 +291,7 @@ def program(catalog: Catalog, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("templates")
     renderers = [Renderer(catalog, component) for component in COMPONENTS_TRIED]
     (folder / "generated.h").write_text(header(renderers))
-    port = [HOST / "src" / "port" / f"{name}.c" for name in ("port", "clock", "monotonic", "serial", "store")]
+    port = [HOST / "src" / "port" / f"{name}.c" for name in PORT]
     sources = [HARNESS, *port, *runtime_sources(), *(s for s in component_sources() if s.stem != "uart")]
     return compile_program(folder / "templates", sources, includes=[folder, HOST / "include", HOST / "src"])
 
