@@ -264,14 +264,6 @@ function(_epg_digest result folder)
   set(${result} "${digest}" PARENT_SCOPE)
 endfunction()
 
-# _epg_pattern(<result> <path>)
-#
-# Sets <result> to a pattern for file(GLOB) that only <path> matches.
-function(_epg_pattern result path)
-  string(REGEX REPLACE "[[*?]" "[\\0]" pattern "${path}")
-  set(${result} "${pattern}" PARENT_SCOPE)
-endfunction()
-
 # _epg_entries(<result> <folder>...)
 #
 # Sets <result> to all files and folders below the folders, except temporary files of editors.

@@ -159,6 +159,14 @@ function(_epg_data_folder result)
   set(${result} "${above}" PARENT_SCOPE)
 endfunction()
 
+# _epg_pattern(<result> <path>)
+#
+# Sets <result> to a pattern for file(GLOB) that only <path> matches.
+function(_epg_pattern result path)
+  string(REGEX REPLACE "[[*?]" "[\\0]" pattern "${path}")
+  set(${result} "${pattern}" PARENT_SCOPE)
+endfunction()
+
 # _epg_own_roots(<result>)
 #
 # Sets <result> to the folders of targets that come with EPG: those in integration/, and targets/.  epg/generator/data.py
