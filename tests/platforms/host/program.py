@@ -18,6 +18,8 @@ TARGETS = Path(__file__).resolve().parents[3] / "targets"
 HOST = TARGETS / "platforms" / "host"
 RUNTIME = TARGETS / "runtime"
 CONSOLE = TARGETS / "middlewares" / "console"
+LINKS = [HOST / "src/links/realtime", HOST / "src/links/linux"]
+INCLUDES = [RUNTIME / "include", HOST / "include", HOST / "src", *LINKS, CONSOLE]
 SCAN = [CONSOLE / "scan.c", CONSOLE / "frame.c"]
 PROGRAMS = Path(__file__).resolve().parent / "programs"
 
@@ -37,10 +39,8 @@ def compile_program(
     compiler = shutil.which("gcc") or shutil.which("cc")
     assert compiler is not None, "a C compiler is needed"
     defines = ["EPG_HOST_TARGET=epg_host_application", *defines]
-    includes = [RUNTIME / "include", HOST / "include", HOST / "src", CONSOLE]
-    includes += [HOST / "src/links/realtime", HOST / "src/links/linux"]
     command = [compiler, "-std=c11", "-O1", "-g", *WARNINGS, *sanitize]
-    command += [f"-I{folder}" for folder in includes] + [f"-D{define}" for define in defines]
+    command += [f"-I{folder}" for folder in INCLUDES] + [f"-D{define}" for define in defines]
     return build_program(command, output, sources)
 
 
