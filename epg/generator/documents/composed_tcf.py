@@ -39,9 +39,12 @@ class FoundTcf:
 def composed_tcf(name: str, roots: Sequence[Path]) -> FoundTcf | None:
     """The configuration ``name``, with or without ``.tcf``; None if it names no board, platform and robot."""
     stem = name.removesuffix(".tcf")
-    for robot in robot_names(roots):
+    robots = _robot_files(roots)
+    for robot in robots:
         target = stem.removesuffix(f"_{robot}")
-        for board, platform in _splits(target, roots) if target != stem else ():
+        if target == stem or not _has_no_target(robot, robots):
+            continue
+        for board, platform in _splits(target, roots):
             folders = [root / "robots" / robot for root in roots]
             absent = [folder / f"{stem}.tcf" for folder in folders]
             for file in _extended(board, platform, robot, roots):
@@ -55,12 +58,18 @@ def composed_tcf(name: str, roots: Sequence[Path]) -> FoundTcf | None:
 
 def robot_names(roots: Sequence[Path]) -> list[str]:
     """The robots without a target: the file ``<robot>.tcf`` of each states none, nor do the robots that it extends."""
+    files = _robot_files(roots)
+    return [name for name in files if _has_no_target(name, files)]
+
+
+def _robot_files(roots: Sequence[Path]) -> dict[str, Path]:
+    """The file ``<robot>.tcf`` in the folder of each robot."""
     files: dict[str, Path] = {}
     for root in roots:
         for folder in (root / "robots").glob("*/"):
             if is_file(file := folder / f"{folder.name}.tcf"):
-                files.setdefault(file.name, file)
-    return sorted(name.removesuffix(".tcf") for name in files if _has_no_target(name, files))
+                files.setdefault(folder.name, file)
+    return dict(sorted(files.items()))
 
 
 def _has_no_target(name: str, files: Mapping[str, Path]) -> bool:
@@ -72,7 +81,7 @@ def _has_no_target(name: str, files: Mapping[str, Path]) -> bool:
             return False
         if "extends" not in node:
             return True
-        name = str(node["extends"].value)
+        name = str(node["extends"].value).removesuffix(".tcf")
     return False
 
 
