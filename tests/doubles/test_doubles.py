@@ -58,7 +58,8 @@ def test_another_project_can_import_them(tmp_path: Path) -> None:
     texts = [(DOUBLES / name / "README.md").read_text(encoding="utf-8") for name in NAMES if name != "ros2_peer"]
     imports = re.findall(r"^from tests\..*", "\n".join(texts), re.MULTILINE)
     assert len(imports) >= 7
-    environment = {**os.environ, "PYTHONPATH": str(tmp_path)}
+    packages = [folder for folder in sys.path if folder and not Path(folder).is_relative_to(ROOT)]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *packages])}
     command = [sys.executable, "-c", "\n".join(imports)]
     done = subprocess.run(command, capture_output=True, text=True, env=environment, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
