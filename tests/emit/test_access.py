@@ -16,8 +16,7 @@ from epg.generator.diagnostics import Diagnostics
 from epg.generator.emit.access import unique_words
 from epg.generator.emit.model.variables import model_variables
 from tests.fuzz.compiler import ROOT, compile_outputs, include_options, needs_compiler
-from tests.platforms.host.program import ADDRESS_SANITIZER, TARGETS, THREAD_SANITIZER, platform_sources
-from tests.platforms.host.program import INCLUDES as HOST_INCLUDES
+from tests.platforms.host.program import ADDRESS_SANITIZER, TARGETS, THREAD_SANITIZER, include_folders, platform_sources
 from tests.runtime.program import compile_program, run_program
 
 PROJECT = Path(__file__).resolve().parent / "access"
@@ -113,7 +112,7 @@ def test_a_program_beside_messages_and_cycles(middleware: str, sanitizer: list[s
         list(dict.fromkeys([*sources, *(sorted(console.glob("*.c")) if middleware == "console" else [])])),
         options=["-O1", *sanitizer],
         defines=["SHARED"] if middleware == "console" else [],
-        includes=[tmp_path / "out", tmp_path / "model", console, *map(Path, folders), *HOST_INCLUDES],
+        includes=[tmp_path / "out", tmp_path / "model", console, *map(Path, folders), *include_folders()],
     )
     environment = {"TSAN_OPTIONS": "halt_on_error=1 exitcode=66"}
     done = run_program([program], environment=environment)

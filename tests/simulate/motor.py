@@ -8,7 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from tests.platforms.host.program import INCLUDES, PROGRAMS, platform_sources
+from tests.platforms.host.program import PROGRAMS, include_folders, platform_sources
 
 
 def compile_motor(output: Path, *defines: str) -> Path:
@@ -18,6 +18,6 @@ def compile_motor(output: Path, *defines: str) -> Path:
     sources = [*platform_sources(system="linux" if sys.platform == "linux" else "elsewhere"), PROGRAMS / "motor.c"]
     command = [compiler, "-std=c11", "-O1", "-DEPG_HOST_TARGET=epg_host_application"]
     command += [f"-D{define}" for define in defines]
-    command += [f"-I{folder}" for folder in INCLUDES]
+    command += [f"-I{folder}" for folder in include_folders()]
     subprocess.run([*command, *map(str, sources), "-pthread", "-lm", "-o", str(output)], check=True)
     return output

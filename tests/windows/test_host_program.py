@@ -20,7 +20,7 @@ import pytest
 from epg.live.client import Client
 from epg.live.udp import UdpPort
 from tests.checkout import ROOT
-from tests.platforms.host.program import CONSOLE, HOST, PROGRAMS, RUNTIME, WARNINGS, platform_sources
+from tests.platforms.host.program import PROGRAMS, WARNINGS, include_folders, platform_sources
 from tests.windows.computer import GCC, MISSING, Computer, is_here
 
 needs_wine = pytest.mark.skipif(not is_here(), reason=MISSING)
@@ -30,10 +30,8 @@ needs_zig = pytest.mark.skipif(
 
 
 def options(system: str) -> list[str]:
-    links = HOST / "src/links"
-    folders = [RUNTIME / "include", HOST / "include", HOST / "src", CONSOLE, links / "realtime", links / system]
     defines = ["-DEPG_HOST_TARGET=epg_host_application", "-D_POSIX_C_SOURCE=200809L"]
-    return ["-std=c11", *WARNINGS, *defines, *(f"-I{folder}" for folder in folders)]
+    return ["-std=c11", *WARNINGS, *defines, *(f"-I{folder}" for folder in include_folders(system))]
 
 
 @pytest.fixture(scope="module")

@@ -56,12 +56,6 @@ def composed_tcf(name: str, roots: Sequence[Path]) -> FoundTcf | None:
     return None
 
 
-def robot_names(roots: Sequence[Path]) -> list[str]:
-    """The robots without a target: the file ``<robot>.tcf`` of each states none, nor do the robots that it extends."""
-    files = _robot_files(roots)
-    return [name for name in files if _has_no_target(name, files)]
-
-
 def _robot_files(roots: Sequence[Path]) -> dict[str, Path]:
     """The file ``<robot>.tcf`` in the folder of each robot."""
     files: dict[str, Path] = {}
@@ -73,6 +67,7 @@ def _robot_files(roots: Sequence[Path]) -> dict[str, Path]:
 
 
 def _has_no_target(name: str, files: Mapping[str, Path]) -> bool:
+    """True if neither the file of the robot states a target, nor those of the robots that it extends."""
     read: set[str] = set()
     while name in files and name not in read:
         read.add(name)
@@ -87,7 +82,8 @@ def _has_no_target(name: str, files: Mapping[str, Path]) -> bool:
 
 def composed_names(targets: Iterable[str], roots: Sequence[Path]) -> set[str]:
     """The names of the composed configurations of ``targets``."""
-    robots = robot_names(roots)
+    files = _robot_files(roots)
+    robots = [name for name in files if _has_no_target(name, files)]
     return {f"{target}_{robot}.tcf" for target in targets for robot in robots}
 
 

@@ -18,8 +18,6 @@ TARGETS = Path(__file__).resolve().parents[3] / "targets"
 HOST = TARGETS / "platforms" / "host"
 RUNTIME = TARGETS / "runtime"
 CONSOLE = TARGETS / "middlewares" / "console"
-LINKS = [HOST / "src/links/realtime", HOST / "src/links/linux"]
-INCLUDES = [RUNTIME / "include", HOST / "include", HOST / "src", *LINKS, CONSOLE]
 SCAN = [CONSOLE / "scan.c", CONSOLE / "frame.c"]
 PROGRAMS = Path(__file__).resolve().parent / "programs"
 
@@ -40,8 +38,14 @@ def compile_program(
     assert compiler is not None, "a C compiler is needed"
     defines = ["EPG_HOST_TARGET=epg_host_application", *defines]
     command = [compiler, "-std=c11", "-O1", "-g", *WARNINGS, *sanitize]
-    command += [f"-I{folder}" for folder in INCLUDES] + [f"-D{define}" for define in defines]
+    command += [f"-I{folder}" for folder in include_folders()] + [f"-D{define}" for define in defines]
     return build_program(command, output, sources)
+
+
+def include_folders(system: str = "linux") -> list[Path]:
+    """The folders of headers of the runtime and the host platform, for a program of ``system``."""
+    links = HOST / "src/links"
+    return [RUNTIME / "include", HOST / "include", HOST / "src", CONSOLE, links / "realtime", links / system]
 
 
 def platform_sources(*, main: bool = True, system: str = "linux") -> list[Path]:
