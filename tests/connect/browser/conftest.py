@@ -134,7 +134,7 @@ def copy_jiwy(folder: Path) -> None:
     cmake.write_text(text.replace(here, ROOT.as_posix()), encoding="utf-8")
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")  # a build that one file leaves in the folder is no part of another file's tests
 def served_jiwy(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Project]:
     # A new folder each time, in which the user has not yet agreed to build, even if the names of folders repeat.
     project = Project(tmp_path_factory.mktemp(f"connect-{secrets.token_hex(4)}") / "jiwy")
