@@ -10,7 +10,6 @@ import pytest
 
 from .program import (
     FAKES,
-    PORT,
     SOURCES,
     compile_objects,
     compile_program,
@@ -20,7 +19,6 @@ from .program import (
     runtime_sources,
 )
 
-HELPERS = [*FAKES, PORT / "motor.c"]
 PROGRAMS = sorted(SOURCES.glob("*_tests.c"))
 
 
@@ -36,7 +34,7 @@ def program_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Path], Pat
     """The program for a C test file; each is compiled once, and so are the sources that all of them contain."""
     folder = tmp_path_factory.mktemp("c")
     programs: dict[Path, Path] = {}
-    shared = compile_objects(folder / "shared", [*HELPERS, *runtime_sources(), *component_sources()])
+    shared = compile_objects(folder / "shared", [*FAKES, *runtime_sources(), *component_sources()])
 
     def build(source: Path) -> Path:
         if source not in programs:

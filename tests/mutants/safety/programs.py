@@ -35,17 +35,13 @@ FIRMWARE_TESTS = ROOT / "tests" / "platforms" / "firmware" / "c"
 CONSOLE = ROOT / "targets" / "middlewares" / "console"
 FIRMWARE = ROOT / "targets" / "platforms" / "firmware"
 
-HELPERS = [
-    *FAKES,
-    PORT / "motor.c",
-    CONSOLE_TESTS / "console_bench.c",
-]
 LIBRARY = [
     *runtime_sources(),
     *component_sources(),
     *sorted(CONSOLE.glob("*.c")),
     FIRMWARE / "src" / "firmware.c",
-    *HELPERS,
+    *FAKES,
+    CONSOLE_TESTS / "console_bench.c",
 ]
 SOURCES = [path for folder in (RUNTIME_TESTS, CONSOLE_TESTS, FIRMWARE_TESTS) for path in folder.glob("*_tests.c")]
 PROGRAMS = {path.stem.removesuffix("_tests"): path for path in SOURCES}
