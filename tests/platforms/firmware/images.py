@@ -11,13 +11,13 @@ from tests.doubles.toolchain import skip_if_missing, tool
 
 from .builds import HERE, PROCESSORS, build
 
-MACHINES = {"m3": "mps2-an385", "m4f": "mps2-an386", "m7": "mps2-an500"}
+MACHINES = {"m3": "mps2-an385", "m7": "mps2-an500"}
 """QEMU's machine for each processor."""
 
-PORTS = {"m3": "ARM_CM3", "m4f": "ARM_CM4F", "m7": "ARM_CM7/r0p1"}
+PORTS = {"m3": "ARM_CM3", "m7": "ARM_CM7/r0p1"}
 """The port of FreeRTOS for each processor."""
 
-COUNTERS = {"m3": (32, 32), "m4f": (16, 64), "m7": (64, 16)}
+COUNTERS = {"m3": (32, 32), "m7": (64, 16)}
 """Bits of the counters of pan and tilt."""
 
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 import ctypes
 import re
 import struct
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 
 from tests.doubles.stm32.agenda import UNITS
 from tests.doubles.stm32.machine import Machine
@@ -39,16 +39,12 @@ BEFORE = UNITS // 100_000
 
 
 class Jiwy:
-    """``swapped``: axes whose encoder has A and B exchanged; ``dead``: axes whose encoder does not count.
-
-    ``masks``: the tick waits wherever interrupts are masked; see Masks.
+    """``masks``: the tick waits wherever interrupts are masked; see Masks.
 
     ``rows``: the ports of the model in each cycle; ``counts``: of both encoders; ``duties``: at the motors.
     """
 
-    def __init__(
-        self, platform: str, middleware: str = "console", *, swapped: Collection[str] = (), masks: bool = False
-    ) -> None:
+    def __init__(self, platform: str, middleware: str = "console", *, masks: bool = False) -> None:
         skip_if_missing(unicorn)
         elf = images(platform, middleware) / "jiwy_firmware.elf"
         self.robot = ctypes.CDLL(str(host() / "librobot.so"))
@@ -61,7 +57,6 @@ class Jiwy:
         self.timer = self.chip.timers[f"TIM{found[1]}"]
         self.masks = Masks(self.chip, self.timer.kind.update) if masks else None
         self.line = self.chip.uarts[3].line
-        self.swapped, self.dead = set(swapped), set[str]()
         self.rows: list[dict[str, float]] = []
         self.counts: list[tuple[int, ...]] = []
         self.duties: list[tuple[float, ...]] = []
@@ -88,8 +83,8 @@ class Jiwy:
         for index, axis in enumerate(AXES):
             moved = signed[index] - self._shown[index]
             self._shown[index] = signed[index]
-            if moved and axis not in self.dead:
-                self.chip.turn(ENCODERS[axis][0], -moved if axis in self.swapped else moved)
+            if moved:
+                self.chip.turn(ENCODERS[axis][0], moved)
 
     def _read_ports(self) -> None:
         values: list[float] = []

@@ -47,13 +47,12 @@ typedef struct board_uart {
 #define UARTS 3U
 
 /** Numbers of interrupts.  The receive interrupt of UART n has the number 2 n. */
-enum { IRQ_UART0 = 0, IRQ_UART1 = 2, IRQ_UART2 = 4, IRQ_TIMER0 = 8, IRQ_TIMER1 = 9, IRQ_FREE = 31, IRQS = 32 };
+enum { IRQ_UART0 = 0, IRQ_UART1 = 2, IRQ_UART2 = 4, IRQ_TIMER0 = 8, IRQ_TIMER1 = 9, IRQS = 32 };
 
 /** Priorities; a smaller number is more urgent.  FreeRTOS masks those from 0x50 on in its critical sections. */
 enum { PRIORITY_CYCLE = 0x20, PRIORITY_CLOCK = 0x40, PRIORITY_UART = 0x80 };
 
 #define NVIC_ENABLE (*(volatile uint32_t *)0xE000E100U)
-#define NVIC_PEND (*(volatile uint32_t *)0xE000E200U)
 #define NVIC_PRIORITY ((volatile uint8_t *)0xE000E400U)
 #define CPACR (*(volatile uint32_t *)0xE000ED88U) /* access to the floating-point unit */
 
@@ -61,22 +60,6 @@ static inline void board_interrupt_on(unsigned int number, uint8_t priority)
 {
     NVIC_PRIORITY[number] = priority;
     NVIC_ENABLE = 1U << number;
-}
-
-/** Sleeps until an interrupt is pending.  The caller has masked interrupts, so that none of them gets lost before. */
-static inline void board_sleep(void)
-{
-    __asm volatile("dsb\n wfi" ::: "memory");
-}
-
-static inline void board_mask(void)
-{
-    __asm volatile("cpsid i" ::: "memory");
-}
-
-static inline void board_unmask(void)
-{
-    __asm volatile("cpsie i\n isb" ::: "memory");
 }
 
 #endif

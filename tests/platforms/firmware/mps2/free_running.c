@@ -26,9 +26,6 @@
 
 enum { CONSOLE = 0, AGENT = 1, TEST = 2 };
 
-/** QEMU counts instructions as the board's time.  A board that sleeps would run much faster than real time. */
-const bool program_sleeps = false;
-
 #define PERIOD (BOARD_HZ / 1000U) /* clocks of a control period */
 
 static volatile uint32_t long_cycles; /* number of cycles that are too long */

@@ -57,7 +57,7 @@ void uart2_handler(void)
     receive(2);
 }
 
-size_t line_waiting(unsigned int number)
+static size_t line_waiting(unsigned int number)
 {
     return lines[number].written - lines[number].read;
 }

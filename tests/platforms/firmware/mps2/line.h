@@ -12,9 +12,6 @@
 /** Switches UART `number` on. */
 void line_start(unsigned int number);
 
-/** Number of received bytes that wait. */
-size_t line_waiting(unsigned int number);
-
 /** Copies up to `size` received bytes; returns their number. */
 size_t line_read(unsigned int number, void *data, size_t size);
 

@@ -5,7 +5,6 @@
  */
 #include <stdint.h>
 
-#include "board.h"
 #include "line.h"
 #include "program.h"
 #include "worn_firmware.h"
@@ -14,8 +13,6 @@
 extern worn_model_outputs_t worn_outputs;
 
 enum { RUNS = 3, CYCLES = 50 };
-
-const bool program_sleeps = true;
 
 static uint64_t now_ns;
 
@@ -38,7 +35,6 @@ static void cycle(void)
 void program_start(void)
 {
     line_start(0);
-    board_unmask();
     (void)worn_start();
     for (int run = 0; run < RUNS; run++) {
         for (int i = 0; i < CYCLES; i++) {

@@ -29,7 +29,6 @@ HANDLER(uart1_handler);
 HANDLER(uart2_handler);
 HANDLER(timer0_handler);
 HANDLER(timer1_handler);
-HANDLER(free_handler);
 
 typedef union vector {
     void *stack;
@@ -53,7 +52,6 @@ __attribute__((section(".vectors"), used)) const vector_t vectors[16 + IRQS] = {
     [16 + IRQ_UART2] = {.handler = uart2_handler},
     [16 + IRQ_TIMER0] = {.handler = timer0_handler},
     [16 + IRQ_TIMER1] = {.handler = timer1_handler},
-    [16 + IRQ_FREE] = {.handler = free_handler},
 };
 
 void reset_handler(void)
