@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measures the jitter of ticks, encoder reads and outputs of JIWY on an RP2040: EPG's images, and other kinds of tick.
+"""Measures the jitter of ticks, encoder reads and outputs of JIWY's images on an RP2040.
 
 Everything runs in EPG's emulator, which times every control cycle from outside.  The emulator simulates both cores with
 the exact number of processor cycles, PIO, PWM and USB.  It does not simulate contention for the bus or the flash cache.
@@ -8,7 +8,6 @@ the exact number of processor cycles, PIO, PWM and USB.  It does not simulate co
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
 
 from measure import need
 from report import Table, arguments, command_line, show
@@ -17,7 +16,7 @@ from tests.doubles.toolchain import arm_gcc, node, pico_sdk, rp2040js
 from tests.platforms.pico.images import freertos_kernel
 from tests.platforms.pico.timing.many import measure_many
 from tests.platforms.pico.timing.measure import LOADS, Load, Timing
-from tests.platforms.pico.timing.programs import Program, by_hand, generated
+from tests.platforms.pico.timing.programs import Program
 
 HEAD = ["tick", "communication", "cycles", "lost", "overruns", "entry", "first encoder", "second encoder", "written",
         "output"]  # fmt: skip
@@ -32,49 +31,34 @@ FEWEST_CHANGES = 1000
 
 
 def main() -> None:
-    options = arguments(__doc__, seeds=20, comparison=20, milliseconds=3000, programs=5, loads=2)
-    seeds = {True: range(options.seeds), False: range(options.comparison)}  # True: EPG's programs, False: by hand
+    options = arguments(__doc__, seeds=20, milliseconds=3000, programs=2, loads=2)
     need(pico_sdk, arm_gcc, node, rp2040js, freertos_kernel)
+    loads = [load for load in LOADS if load.period == 33][: options.loads]  # tests time the other periods
+    programs = [Program(platform, 33) for platform in ("bare_metal", "freertos")][: options.programs]
     measured = [
-        (program, load, measure_many(program, load, seeds[is_ours(program)], options.milliseconds / 1000))
-        for program, load in chosen(options.programs, options.loads)
+        (program, load, measure_many(program, load, range(options.seeds), options.milliseconds / 1000))
+        for program in programs
+        for load in loads
     ]
     rows = [row(program, load, timing) for program, load, timing in measured]
-    ours = [timing for program, _, timing in measured if is_ours(program)]
     notes = [
         "Deviations from t0 + k T in cycles of 8 ns, smallest ... largest, and the share of cycles that deviate. "
         "Entry: the first instruction of the tick's handler. Encoders: the start of each read. Written: the end of the "
         "last PWM write, in microseconds from the tick. Output: the PWM wrap (every 6,250 cycles) at which a level "
         "takes effect, against the wrap at which most do.",
-        f"EPG's rows: {options.seeds} USB hosts with random phase and a clock within 500 ppm, the others: "
-        f"{options.comparison} of them; {options.milliseconds / 1000:g} s from reset each. Flooded: packets both ways "
-        "as fast as USB takes them.",
-        *judged(ours),
+        f"{options.seeds} USB hosts with random phase and a clock within 500 ppm; {options.milliseconds / 1000:g} s "
+        "from reset each. Flooded: packets both ways as fast as USB takes them.",
+        *judged([timing for _, _, timing in measured]),
         NOT_HARDWARE,
     ]
     show("pico_timing", [Table("Deviation of a 1 ms control cycle, RP2040, simulated", HEAD, rows, notes)],
          options.write, command_line("pico_timing"))  # fmt: skip
 
 
-def chosen(programs: int, loads: int) -> Iterator[tuple[Program, Load]]:
-    """The first ``programs`` programs, each with the first ``loads`` loads."""
-    ours = [lambda load, platform=platform: generated(platform, load.period) for platform in ("bare_metal", "freertos")]
-    others = ("by_hand_alarm_core0", "by_hand_alarm_core1", "by_hand_smp")
-    hands = [lambda load, executable=executable: by_hand(executable) for executable in others]
-    for make in [*ours, *hands][:programs]:
-        for load in [load for load in LOADS if load.period == 33][:loads]:  # tests time the other periods
-            yield make(load), load
-
-
-def is_ours(program: Program) -> bool:
-    return program.title.startswith("EPG")
-
-
 def row(program: Program, load: Load, timing: Timing) -> list[str]:
     counts = [f"{timing.cycles:,}", f"{timing.missed:,}", f"{timing.overruns:,}"]
-    second = extent(timing.last_read) if program.period is not None else ""
     written = f"{min(timing.written) * 0.008:.0f} ... {max(timing.written) * 0.008:.0f}"
-    reads = [extent(timing.entry), extent(timing.first_read), second]
+    reads = [extent(timing.entry), extent(timing.first_read), extent(timing.last_read)]
     return [program.title, load.title, *counts, *reads, written, extent(timing.actuation)]
 
 
@@ -94,7 +78,7 @@ def judged(timings: list[Timing]) -> list[str]:
     if min(timing.actuation.total() for timing in timings) < FEWEST_CHANGES:
         outputs = "not measured, as outputs have hardly changed in so short a time"
     return [
-        f"Aims of EPG's rows: no tick lost and no overrun: {verdict(lost == 0)}; entry within {AIM_ENTRY} cycles: "
+        f"Aims: no tick lost and no overrun: {verdict(lost == 0)}; entry within {AIM_ENTRY} cycles: "
         f"{verdict(entry <= AIM_ENTRY)}; outputs within {AIM_OUTPUT} cycles: {outputs}."
     ]
 

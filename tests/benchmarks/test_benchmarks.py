@@ -14,9 +14,8 @@ from pathlib import Path
 import pytest
 
 from tests.connect.browser.conftest import NAMES
-from tests.doubles.toolchain import arm_gcc, node, pico_sdk, rp2040js, skip_if_missing, tool, unicorn
+from tests.doubles.toolchain import arm_gcc, node, pico_sdk, rp2040js, skip_if_missing, tool, unicorn, xrce_libraries
 from tests.platforms.firmware.builds import PROCESSORS
-from tests.platforms.stm32.images import PARTS
 
 ROOT = Path(__file__).resolve().parents[2]
 BENCHMARKS = ROOT / "benchmarks"
@@ -28,25 +27,17 @@ SMALLEST = {
     "scaling": ["--rounds", "1", "--components", "40", "--targets", "2", "--system", "4"],
     "system": ["--rounds", "1", "--targets", "2", "--seconds", "1", "--steps", "100"],
     "runtime": ["--cycles", "200", "--trace", "6000"],
-    "exchange": ["--thousands", "1"],
     "pico_timing": ["--seeds", "1", "--milliseconds", "100", "--programs", "1", "--loads", "1"],
     "pico_cycle": ["--cycles", "20"],
-    "stm32_cycle": ["--cycles", "50"],
     "pico_closed_loop": ["--short", "1"],
     "pico_communication": ["--targets", "1"],
-    "pico_text": [],
     "firmware_size": [],
     "setpoint_latency": ["--steps", "20", "--platforms", "1"],
-    "teleoperation": ["--seeds", "1"],
     "pico_polls": ["--milliseconds", "30", "--platforms", "1"],
-    "pico_ping_pong": ["--pings", "5", "--flat", "20", "--platforms", "1", "--combinations", "1"],
     "network_situations": ["--only", "4", "--seconds", "3", "--systems", "0"],
-    "xrce_round_trip": ["--count", "5"],
     "live_stop": ["--count", "3"],
     "ping_pong": ["--pings", "5", "--flat", "20"],
 }
-CLIENT = (lambda: tool("micro_xrce_dds_client"), lambda: tool("micro_cdr"))
-STM32 = ("cmsis_device_h7", *PARTS)
 PROGRAMS = sorted(
     path.stem
     for path in BENCHMARKS.glob("*.py")
@@ -74,17 +65,15 @@ def test_it_runs_and_prints_what_the_page_shows(program: str) -> None:
             pytest.skip("Chromium is not installed: sudo apt install chromium")
     if program in ("configure", "scaling", "system", "live_stop") and shutil.which("cmake") is None:
         pytest.skip("CMake is not installed: sudo apt install cmake")
-    if program.startswith("pico") or program in ("setpoint_latency", "teleoperation"):
+    if program.startswith("pico") or program == "setpoint_latency":
         skip_if_missing(pico_sdk, arm_gcc, node, rp2040js, unicorn, lambda: tool("freertos_kernel"))
-    if program == "stm32_cycle":
-        skip_if_missing(arm_gcc, unicorn, *(lambda name=name: tool(name) for name in STM32))
     if program == "firmware_size":
-        skip_if_missing(lambda: PROCESSORS["m4f"].tool("gcc"), *CLIENT)
+        skip_if_missing(lambda: PROCESSORS["m4f"].tool("gcc"), xrce_libraries)
     if program in ("network_situations", "ping_pong"):
         pytest.importorskip("cyclonedds", reason="CycloneDDS for Python is not installed: pip install cyclonedds")
         skip_if_missing(lambda: tool("cyclonedds"))
-    if program in ("xrce_round_trip", "pico_ping_pong", "setpoint_latency", "teleoperation", "pico_text"):
-        skip_if_missing(lambda: tool("micro_xrce_dds_client"), lambda: tool("micro_cdr"))
+    if program == "setpoint_latency":
+        skip_if_missing(xrce_libraries)
     printed = run(program)
     titles = re.findall(r"^(.+)\n-+$", printed, flags=re.MULTILINE)
     section = re.search(rf"<!-- begin {program} -->(.*?)<!-- end {program} -->", PAGE.read_text(encoding="utf-8"), re.S)
@@ -101,15 +90,8 @@ def test_generated_code_costs_little_more_than_code_written_by_hand() -> None:
     assert float(found[1]) <= 1.1
 
 
-def test_a_cycle_on_an_stm32_costs_little_more_than_one_written_by_hand() -> None:
-    skip_if_missing(arm_gcc, unicorn, *(lambda name=name: tool(name) for name in STM32))
-    found = re.search(r"^all +[\d.]+ +[\d.]+ +[\d.]+ +([\d.]+) x$", run("stm32_cycle"), re.MULTILINE)
-    assert found is not None
-    assert float(found[1]) <= 1.2
-
-
 def test_a_debug_build_needs_little_more_flash_than_a_release_build() -> None:
-    skip_if_missing(lambda: PROCESSORS["m4f"].tool("gcc"), *CLIENT)
+    skip_if_missing(lambda: PROCESSORS["m4f"].tool("gcc"), xrce_libraries)
     rows = re.findall(
         r"^(none|console|xrce and console) +([\d,]+) +([\d,]+) +([\d,]+) ", run("firmware_size"), re.MULTILINE
     )

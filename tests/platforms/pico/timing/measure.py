@@ -21,6 +21,8 @@ from tests.platforms.pico.closed_loop.robot import PERIOD, connect
 
 from .programs import Program
 
+SPANS = {"tick": "on_wrap", "read": "epg_port_quadrature_count", "write": "epg_port_pwm_write"}
+"""The functions that are timed, on core 1."""
 MOTOR_SLICES = (1, 2)
 MOST_UNANSWERED = 3
 """Number of setpoints that the host sends before it waits for an answer."""
@@ -76,18 +78,14 @@ def measure(program: Program, load: Load, seed: int, seconds: float, *, image: P
     usb = {"seed": seed, "phase": phase, "clock_error": clock_error}
     with Emulator(image or program.image(), usb=usb) as pico:
         connect(pico, {"pan": 0.12, "tilt": 0.12})
-        for name in ("tick", "read", "write"):
-            symbol = getattr(program, name)
-            pico.call("watch_span", name=name, core=program.core, **{"from": symbol, "to": "return"})
+        for name, symbol in SPANS.items():
+            pico.call("watch_span", name=name, core=1, **{"from": symbol, "to": "return"})
         pico.call("watch_pwm", slices=list(MOTOR_SLICES))
-        if program.period is None:
-            pico.run_until("main", core=0)
-            pico.write_word("communication_period_us", load.period * 1000)
         pico.run(milliseconds=500, configured=True)
         pico.run(milliseconds=5)
         pico.send("watch pan_publisher\n")
         received = _exercise(pico, load, draw, seconds)
-        timing = evaluate(*(pico.call("span", name=name)["passages"] for name in ("tick", "read", "write")),
+        timing = evaluate(*(pico.call("span", name=name)["passages"] for name in SPANS),
                           pico.call("take", log="pwm"))  # fmt: skip
         timing.received = received
         timing.overruns = _overruns(pico)

@@ -10,7 +10,7 @@ from tests.platforms.pico.images import PLATFORMS, skip_unless_emulated
 
 from .checks import assert_on_time
 from .measure import Load, Timing, evaluate, measure
-from .programs import by_hand, generated
+from .programs import Program
 
 BUSIEST = (Load(1), Load(33, flooded=True))
 
@@ -19,7 +19,7 @@ BUSIEST = (Load(1), Load(33, flooded=True))
 def timings(request: pytest.FixtureRequest) -> dict[Load, Timing]:
     """One second of each of the two loads that keep core 0 busiest."""
     skip_unless_emulated(request.param)
-    return {load: measure(generated(request.param, load.period), load, seed=1, seconds=1.0) for load in BUSIEST}
+    return {load: measure(Program(request.param, load.period), load, seed=1, seconds=1.0) for load in BUSIEST}
 
 
 def test_ticks_and_encoders_are_on_time(timings: dict[Load, Timing]) -> None:
@@ -35,14 +35,6 @@ def test_outputs_act_at_the_same_instant_of_every_cycle(timings: dict[Load, Timi
 
 def test_usb_was_flooded(timings: dict[Load, Timing]) -> None:
     assert timings[Load(33, flooded=True)].received > 100_000, "bytes in a second"
-
-
-def test_an_alarm_pool_beside_communication_is_late() -> None:
-    """The same measurement detects the deviations of a tick that shares its core with USB."""
-    skip_unless_emulated("bare_metal")
-    timing = measure(by_hand("by_hand_alarm_core0"), Load(33, flooded=True), seed=1, seconds=1.0)
-    assert timing.cycles > 900
-    assert max(timing.entry) > 300
 
 
 def passages(*starts: int, length: int = 100) -> list[list[int]]:
