@@ -13,7 +13,7 @@ from pathlib import Path
 from measure import need
 from report import Table, arguments, command_line, show
 
-from tests.doubles.toolchain import tool
+from tests.doubles.toolchain import xrce_libraries
 from tests.platforms.firmware.builds import HERE, PROCESSORS, build
 
 MIDDLEWARES = {"none": "none", "console": "console", "xrce": "xrce and console"}
@@ -28,7 +28,7 @@ BUILDS = {
 
 def main() -> None:
     options = arguments(__doc__)
-    need(lambda: PROCESSOR.tool("gcc"), lambda: tool("micro_xrce_dds_client"), lambda: tool("micro_cdr"))
+    need(lambda: PROCESSOR.tool("gcc"), xrce_libraries)
     folders = {name: build(PROCESSOR, HERE / "builds", **FLAGS, **settings) for name, settings in BUILDS.items()}
     rows = []
     for middleware, title in MIDDLEWARES.items():

@@ -19,8 +19,7 @@ from pathlib import Path
 from measure import ROOT, need, run
 from report import Table, arguments, command_line, show
 
-from tests.doubles.toolchain import arm_gcc, node, pico_sdk, rp2040js
-from tests.doubles.xrce_agent.bare import libraries
+from tests.doubles.toolchain import arm_gcc, node, pico_sdk, rp2040js, xrce_libraries
 from tests.middlewares.xrce import latency as host
 from tests.middlewares.xrce.steps import DELAYS, PERIOD, PROJECT, Step, executable
 from tests.platforms.pico.images import freertos_kernel
@@ -33,7 +32,7 @@ HEAD = ["target", "output delay", "steps", "in the next cycle", "min", "mean", "
 
 def main() -> None:
     options = arguments(__doc__, steps=1000, platforms=len(PLATFORMS))
-    need(pico_sdk, arm_gcc, node, rp2040js, freertos_kernel, libraries)
+    need(pico_sdk, arm_gcc, node, rp2040js, freertos_kernel, xrce_libraries)
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         build(folder)

@@ -70,6 +70,11 @@ def arm_gcc() -> Path:
     return tool("arm_gcc")
 
 
+def xrce_libraries() -> tuple[Path, Path]:
+    """The folders of eProsima's client and of Micro-CDR."""
+    return tool("micro_xrce_dds_client"), tool("micro_cdr")
+
+
 def binutils(program: str, *arguments: str) -> str:
     """The output of a program of the toolchain."""
     path = arm_gcc().parent / f"arm-none-eabi-{program}"

@@ -20,9 +20,8 @@ import pytest
 pytest.importorskip("tests.doubles.ros2_peer.packages", exc_type=ImportError)
 
 from epg.generator import bootstrap
-from tests.doubles.toolchain import cmake_and_ninja, skip_if_missing, tool
+from tests.doubles.toolchain import cmake_and_ninja, skip_if_missing, tool, xrce_libraries
 from tests.doubles.xrce_agent import Agent, UdpLink
-from tests.doubles.xrce_agent.bare import libraries
 from tests.doubles.xrce_agent.dds_bridge import DdsBridge
 from tests.examples.pico_project import configure, run
 from tests.ros2.network import Network, network, running
@@ -58,7 +57,7 @@ def by_dds(tmp_path_factory: pytest.TempPathFactory) -> Build:
 
 @pytest.fixture(scope="module")
 def by_xrce(tmp_path_factory: pytest.TempPathFactory) -> Build:
-    skip_if_missing(libraries)
+    skip_if_missing(xrce_libraries)
     return host_build(tmp_path_factory.mktemp("xrce"), "xrce")
 
 

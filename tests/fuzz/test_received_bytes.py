@@ -15,8 +15,7 @@ from pathlib import Path
 import pytest
 
 from tests.cmake.built import built
-from tests.doubles.toolchain import skip_if_missing
-from tests.doubles.xrce_agent.bare import libraries
+from tests.doubles.toolchain import skip_if_missing, xrce_libraries
 
 PROJECT = Path(__file__).resolve().parent / "xrce"
 INPUTS = 20_000
@@ -25,7 +24,7 @@ INPUTS = 20_000
 @pytest.fixture(scope="module")
 def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of the programs, built with sanitizers."""
-    skip_if_missing(libraries)
+    skip_if_missing(xrce_libraries)
     return built(PROJECT, tmp_path_factory.mktemp("received_bytes"))
 
 

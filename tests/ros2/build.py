@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from tests.cmake.built import build, configured
-from tests.doubles.toolchain import Missing, skip_if_missing, tool
+from tests.doubles.toolchain import Missing, skip_if_missing, tool, xrce_libraries
 
 HERE = Path(__file__).resolve().parent
 
@@ -27,7 +27,7 @@ def build_robots(folder: Path, flags: str) -> Build:
 
     def build_one(target: str) -> Path:
         if target.startswith("agent_"):
-            skip_if_missing(lambda: tool("micro_xrce_dds_client"), lambda: tool("micro_cdr"))
+            skip_if_missing(xrce_libraries)
         build(folder, f"{target}_host")
         return folder / f"{target}_host"
 

@@ -17,9 +17,8 @@ from typing import Any
 import pytest
 
 from epg.simulate import simulate
-from tests.doubles.toolchain import ROOT, Missing, arm_gcc, skip_if_missing
+from tests.doubles.toolchain import ROOT, Missing, arm_gcc, skip_if_missing, xrce_libraries
 from tests.doubles.xrce_agent import Agent, PtyLink, UdpLink, float64
-from tests.doubles.xrce_agent.bare import libraries
 from tests.middlewares.client import Host, Lines, values
 from tests.middlewares.xrce.follow import follow
 from tests.waiting import until
@@ -50,7 +49,7 @@ EVENTS = """time,topic,value
 @pytest.fixture(scope="module")
 def folder() -> Path:
     """The build folder of tests/zephyr/native_sim."""
-    skip_if_missing(lambda: workspace(NATIVE), arm_gcc, libraries)
+    skip_if_missing(lambda: workspace(NATIVE), arm_gcc, xrce_libraries)
     return build(SOURCE, NATIVE)
 
 
@@ -74,7 +73,7 @@ def host(tmp_path_factory: pytest.TempPathFactory) -> Path:
         if not shutil.which("ninja"):
             raise Missing("Ninja is not installed: sudo apt install ninja-build")
 
-    skip_if_missing(libraries, needs)
+    skip_if_missing(xrce_libraries, needs)
     folder = tmp_path_factory.mktemp("host")
     python = f"-DPython3_EXECUTABLE={sys.executable}"
     for command in (

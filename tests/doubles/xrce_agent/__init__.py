@@ -18,8 +18,7 @@ It behaves like eProsima's agent wherever a client can detect a difference, also
 - A service has a replier, with a history of one request.  Requests and replies begin with the identity of the request.
 
 ==========================  ===========================================================================================
-address                     ``UdpLink()`` (a free port), ``PtyLink(path)`` (makes a terminal), ``DeviceLink(path)``
-                            (opens a terminal whenever it exists)
+address                     ``UdpLink()`` (a free port), ``PtyLink(path)`` (makes a terminal)
 faults of frames            ``agent.to_board``, ``agent.from_board``: ``loss``, ``duplicate``, ``reorder``, ``delay``,
                             ``truncate``, ``corrupt``; can be set at any time, with one seed
 faults of the agent         ``kill()``, ``start()``, ``restart(pause)``, ``freeze()``, ``thaw()``, ``inject(bytes)``
@@ -37,14 +36,13 @@ several agents              ``Agent(link, topics)`` with the same ``Topics``: on
 
 from .agent import Agent, Refusal
 from .faults import Faults
-from .links import DeviceLink, Link, PtyLink, UdpLink
+from .links import Link, PtyLink, UdpLink
 from .messages import Diagnostics, float64, read_diagnostics, read_float64
 from .topics import Sample, Subscription, Topics
 from .wire import Kind, Status
 
 __all__ = [
     "Agent",
-    "DeviceLink",
     "Diagnostics",
     "Faults",
     "Kind",

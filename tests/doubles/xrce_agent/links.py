@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Links to an agent: UDP, or a serial line, which is a pseudo terminal or an existing device."""
+"""Links to an agent: UDP, or a serial line, which is a pseudo terminal."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import errno
 import os
 import random
 import socket
-import termios
 import time
 import tty
 from collections.abc import Hashable
@@ -119,13 +118,17 @@ class UdpLink:
                 self._socket.sendto(data, peer)  # type: ignore[call-overload]
 
 
-class SerialLink:
-    """The common part of pseudo terminals and devices.  Peers are addresses on the line; there is only one."""
+class PtyLink:
+    """A pseudo terminal whose other end has a path: ``--serial-device <path>``.  While it is closed, there is no path.
+
+    Peers are addresses on the line; there is only one.
+    """
 
     checked = True
 
-    def __init__(self) -> None:
-        self._file = -1
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._file = self._other = -1
         self._deframer = Deframer()
 
     @property
@@ -133,56 +136,12 @@ class SerialLink:
         """Number of frames that were not valid."""
         return self._deframer.broken
 
-    def fileno(self) -> int:
-        return self._file
-
-    def receive(self) -> list[tuple[Hashable, bytes]]:
-        try:
-            data = os.read(self._file, READ)
-        except BlockingIOError:
-            return []
-        except OSError as error:
-            if error.errno != errno.EIO:
-                raise
-            data = b""
-        if not data:
-            self._nobody()
-        return [*self._deframer.feed(data)]
-
-    def _nobody(self) -> None:
-        """Called when no program is at the other end."""
-
-    def raw(self, peer: Hashable, data: bytes) -> bytes:
-        assert isinstance(peer, int)
-        return frame(data, AGENT, peer)
-
-    def send_raw(self, peer: Hashable, data: bytes) -> None:
-        """Sends bytes.  Bytes that do not fit are lost, as on a serial line."""
-        with contextlib.suppress(OSError):
-            if self._file >= 0:
-                os.write(self._file, data)
-
-    def close(self) -> None:
-        if self._file >= 0:
-            os.close(self._file)
-            self._file = -1
-        self._deframer = Deframer()
-
-
-class PtyLink(SerialLink):
-    """A pseudo terminal whose other end has a path: ``--serial-device <path>``.
-
-    While it is closed, there is no path.
-    """
-
-    def __init__(self, path: Path) -> None:
-        super().__init__()
-        self.path = path
-        self._other = -1
-
     @property
     def address(self) -> str:
         return str(self.path)
+
+    def fileno(self) -> int:
+        return self._file
 
     def open(self) -> None:
         if self._file >= 0:
@@ -197,33 +156,29 @@ class PtyLink(SerialLink):
         """Closes the terminal, like a pulled cable: the board's end hangs up."""
         if self._other >= 0:
             os.close(self._other)
-            self._other = -1
             self.path.unlink(missing_ok=True)
-        super().close()
-
-
-class DeviceLink(SerialLink):
-    """A terminal that a board or an emulator has made; opened as soon as it exists."""
-
-    def __init__(self, path: Path, baud: int = termios.B115200) -> None:
-        super().__init__()
-        self.path, self._baud = path, baud
-
-    @property
-    def address(self) -> str:
-        return str(self.path)
-
-    def open(self) -> None:
         if self._file >= 0:
-            return
-        try:
-            self._file = os.open(self.path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
-        except OSError:
-            return  # it does not exist (yet): the agent tries again
-        tty.setraw(self._file)
-        settings = termios.tcgetattr(self._file)
-        settings[4] = settings[5] = self._baud
-        termios.tcsetattr(self._file, termios.TCSANOW, settings)
+            os.close(self._file)
+        self._file = self._other = -1
+        self._deframer = Deframer()
 
-    def _nobody(self) -> None:
-        self.close()
+    def receive(self) -> list[tuple[Hashable, bytes]]:
+        try:
+            data = os.read(self._file, READ)
+        except BlockingIOError:
+            return []
+        except OSError as error:
+            if error.errno != errno.EIO:
+                raise
+            data = b""  # no program is at the other end
+        return [*self._deframer.feed(data)]
+
+    def raw(self, peer: Hashable, data: bytes) -> bytes:
+        assert isinstance(peer, int)
+        return frame(data, AGENT, peer)
+
+    def send_raw(self, peer: Hashable, data: bytes) -> None:
+        """Sends bytes.  Bytes that do not fit are lost, as on a serial line."""
+        with contextlib.suppress(OSError):
+            if self._file >= 0:
+                os.write(self._file, data)

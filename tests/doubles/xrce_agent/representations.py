@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The description of an entity in a CREATE, in the binary form or in XML.
+"""The description of an entity in a CREATE, in the binary form.
 
-Source: DDS-XRCE 1.0, 7.7.3 and annex A (binary), the DDS-XML profiles of Fast DDS (XML).
+Source: DDS-XRCE 1.0, 7.7.3 and annex A.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from xml.etree import ElementTree
 
 from .wire import CdrReader, Kind, WireError
 
-REFERENCE, XML, BINARY = 1, 2, 3
+BINARY = 3
 IS_RELIABLE, IS_KEEP_LAST, IS_TRANSIENT_LOCAL = 0x01, 0x02, 0x08
 
 
@@ -35,10 +34,9 @@ class Description:
     type: str = ""
     """The type of the topic."""
     topic: bytes = b""
-    """The object id of a writer's or reader's topic; XML gives the topic's name instead."""
+    """The object id of a writer's or reader's topic."""
     qos: Qos = Qos(reliable=True)
     domain: int = 0
-    form: int = BINARY
     replies: tuple[str, str] = ("", "")
     """The name and the type of a replier's topic for replies; ``name`` and ``type`` are those of its requests."""
 
@@ -50,23 +48,16 @@ def read_description(payload: CdrReader) -> Description:
     except ValueError as error:
         raise WireError(str(error)) from None
     form = payload.u8()
-    if form == BINARY:
-        content = payload.octets()
-    elif form in (XML, REFERENCE):
-        content = payload.string().encode()
-    else:
+    if form != BINARY:
         raise WireError(f"representation {form}")
+    content = payload.octets()
     parent, domain = b"", 0
     if kind == Kind.PARTICIPANT:
         domain = payload.number("h")
     else:
         parent = payload.take(2)
-    if form == BINARY:
-        little = payload._order == "<"
-        return _binary(kind, CdrReader(content, little), parent, domain)
-    if form == XML:
-        return _xml(kind, content.decode(), parent, domain)
-    return Description(kind, parent, name=content.decode(), domain=domain, form=form)
+    little = payload._order == "<"
+    return _binary(kind, CdrReader(content, little), parent, domain)
 
 
 def _binary(kind: Kind, data: CdrReader, parent: bytes, domain: int) -> Description:
@@ -107,32 +98,3 @@ def _binary_qos(data: CdrReader) -> Qos:
     flags = data.u16()
     depth = data.u16() if data.flag() else None
     return Qos(bool(flags & IS_RELIABLE), bool(flags & IS_KEEP_LAST), depth, bool(flags & IS_TRANSIENT_LOCAL))
-
-
-def _xml(kind: Kind, text: str, parent: bytes, domain: int) -> Description:
-    try:
-        root = ElementTree.fromstring(text) if text.strip() else ElementTree.Element("dds")
-    except ElementTree.ParseError as error:
-        raise WireError(f"XML: {error}") from None
-
-    def find(path: str, default: str = "") -> str:
-        return (root.findtext(path) or default).strip()
-
-    if kind == Kind.PARTICIPANT:
-        return Description(kind, name=find("participant/rtps/name"), domain=domain, form=XML)
-    if kind == Kind.TOPIC:
-        return Description(kind, parent, find("topic/name"), find("topic/dataType"), form=XML)
-    if kind in (Kind.PUBLISHER, Kind.SUBSCRIBER):
-        return Description(kind, parent, form=XML)
-    if kind in (Kind.REQUESTER, Kind.REPLIER):
-        raise WireError("this agent makes repliers of the binary form only")
-    base = "data_writer" if kind == Kind.WRITER else "data_reader"
-    default = "RELIABLE" if kind == Kind.WRITER else "BEST_EFFORT"
-    depth = find(f"{base}/topic/historyQos/depth")
-    qos = Qos(
-        reliable=find(f"{base}/qos/reliability/kind", default) == "RELIABLE",
-        keep_last=find(f"{base}/topic/historyQos/kind", "KEEP_LAST") == "KEEP_LAST",
-        depth=int(depth) if depth else None,
-        transient_local=find(f"{base}/qos/durability/kind") == "TRANSIENT_LOCAL",
-    )
-    return Description(kind, parent, find(f"{base}/topic/name"), find(f"{base}/topic/dataType"), b"", qos, form=XML)

@@ -139,15 +139,6 @@ def string(text: str) -> bytes:
             Description(Kind.WRITER, b"\x00\x13", topic=b"\x00\x12", qos=Qos(True, True, 7)),
         ),
         (
-            b"\x06\x02\0\0"
-            + string(
-                "<dds><data_reader><qos><reliability><kind>RELIABLE</kind></reliability></qos>"
-                "<topic><name>rt/x</name><dataType>T</dataType></topic></data_reader></dds>"
-            )
-            + b"\x00\x14",
-            Description(Kind.READER, b"\x00\x14", "rt/x", "T", qos=Qos(True), form=2),
-        ),
-        (
             b"\x08\x03\0\0"
             + struct.pack("<I", 8 + 8 + 8 + 4 + 12 + 4 + 12)
             + (string("abc") + string("Req") + string("Rep") + b"\1\0\0\0" + string("rq/abcd") + b"\1\0\0\0")

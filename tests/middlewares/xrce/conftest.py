@@ -9,16 +9,15 @@ from pathlib import Path
 import pytest
 
 from tests.cmake.built import SANITIZERS, built
-from tests.doubles.toolchain import skip_if_missing
+from tests.doubles.toolchain import skip_if_missing, xrce_libraries
 from tests.doubles.xrce_agent import Agent, UdpLink
-from tests.doubles.xrce_agent.bare import libraries
 
 HERE = Path(__file__).resolve().parent
 
 
 def build(project: str, folder: Path, flags: str, *settings: str) -> Path:
     """Builds a project; returns the folder with the executables."""
-    skip_if_missing(libraries)
+    skip_if_missing(xrce_libraries)
     return built(HERE / project, folder, f"-DCMAKE_C_FLAGS={flags}", *settings)
 
 

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.doubles.toolchain import ROOT, skip_if_missing
-from tests.doubles.xrce_agent.bare import libraries
+from tests.doubles.toolchain import ROOT, skip_if_missing, xrce_libraries
 from tests.examples.pico_project import configure, run
 from tests.middlewares.xrce.steps import DELAYS, PERIOD, PROJECT, executable
 
@@ -23,7 +22,7 @@ RESOLUTION = 5e-6
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    skip_if_missing(libraries)
+    skip_if_missing(xrce_libraries)
     made = tmp_path_factory.mktemp("latency")
     configure(ROOT / PROJECT, build=made)
     run(made, "cmake", "--build", ".")

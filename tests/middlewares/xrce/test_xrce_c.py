@@ -12,8 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.doubles.toolchain import Missing
-from tests.doubles.xrce_agent.bare import libraries
+from tests.doubles.toolchain import Missing, xrce_libraries
 from tests.middlewares.test_console_c import program
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -26,7 +25,7 @@ AGENT = ROOT / "tests" / "doubles" / "xrce_agent" / "clocked"
 def client(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[str]]:
     """The client library as EPG compiles it, with sanitizers: the archive, and options for its headers."""
     try:
-        libraries()
+        xrce_libraries()
     except Missing as missing:
         pytest.skip(str(missing))
     if not shutil.which("ninja"):

@@ -7,7 +7,7 @@ from collections import Counter
 from functools import partial
 from pathlib import Path
 
-from tests.doubles.toolchain import arm_gcc, node, rp2040js, skip_if_missing, tool
+from tests.doubles.toolchain import arm_gcc, node, rp2040js, skip_if_missing, xrce_libraries
 from tests.platforms.pico.closed_loop.robot import WRAP_EXCEPTION
 from tests.platforms.pico.xrce.board import Jiwy
 from tests.zephyr.workspace import build, c_library, workspace
@@ -25,7 +25,7 @@ SPANS = {
 
 def skip_unless_emulated() -> None:
     skip_if_missing(partial(workspace, "rpi_pico"), arm_gcc, c_library, node, rp2040js)
-    skip_if_missing(lambda: tool("micro_xrce_dds_client"), lambda: tool("micro_cdr"))
+    skip_if_missing(xrce_libraries)
 
 
 def image() -> Path:

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests.doubles.stm32.stm32h743 import Stm32h743
-from tests.doubles.toolchain import arm_gcc, skip_if_missing, tool, unicorn
+from tests.doubles.toolchain import arm_gcc, skip_if_missing, unicorn, xrce_libraries
 from tests.zephyr.workspace import build, c_library, workspace
 
 ENCODERS = {"encoder_pan": ("TIM4", ("D", 12), ("D", 13), 2), "encoder_tilt": ("TIM8", ("C", 6), ("C", 7), 3)}
@@ -27,7 +27,7 @@ READ, WRITE = 400, 700
 @pytest.fixture(scope="module")
 def image() -> Path:
     skip_if_missing(partial(workspace, "nucleo_h743zi"), arm_gcc, c_library, unicorn)
-    skip_if_missing(lambda: tool("micro_xrce_dds_client"), lambda: tool("micro_cdr"))
+    skip_if_missing(xrce_libraries)
     return build("examples/zephyr_jiwy/app", "nucleo_h743zi", settings=c_library()) / "zephyr" / "zephyr.elf"
 
 

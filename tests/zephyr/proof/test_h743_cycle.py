@@ -15,7 +15,7 @@ from statistics import mean
 import pytest
 
 from tests.doubles.stm32.stm32h743 import Stm32h743
-from tests.doubles.toolchain import arm_gcc, skip_if_missing, tool, unicorn
+from tests.doubles.toolchain import arm_gcc, skip_if_missing, unicorn, xrce_libraries
 from tests.zephyr.proof.test_h743 import ENCODERS, OUTPUTS
 from tests.zephyr.workspace import build, c_library, workspace
 
@@ -33,7 +33,7 @@ LIMIT = 20_000
 @pytest.fixture(scope="module")
 def image() -> Path:
     skip_if_missing(partial(workspace, "nucleo_h743zi"), arm_gcc, c_library, unicorn)
-    skip_if_missing(lambda: tool("micro_xrce_dds_client"), lambda: tool("micro_cdr"))
+    skip_if_missing(xrce_libraries)
     settings = {"CONFIG_FPU": "n", "CONFIG_FPU_SHARING": "n", **c_library()}
     return build("tests/zephyr/proof/application", "nucleo_h743zi", settings=settings) / "zephyr" / "zephyr.elf"
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.doubles.toolchain import skip_if_missing
-from tests.doubles.xrce_agent.bare import libraries
+from tests.doubles.toolchain import skip_if_missing, xrce_libraries
 from tests.middlewares.xrce.steps import PERIOD
 from tests.platforms.pico.images import PLATFORMS, skip_unless_emulated
 from tests.platforms.pico.timing.checks import LARGEST_ENTRY
@@ -28,7 +27,7 @@ STEPS = 60
 @pytest.mark.parametrize("platform", PLATFORMS)
 def test_the_next_cycle(platform: str) -> None:
     skip_unless_emulated(platform)
-    skip_if_missing(libraries)
+    skip_if_missing(xrce_libraries)
     for delay, image in programs(platform).items():
         steps = measure(image, STEPS)
         acts = 1e-6 * delay + WRAP
