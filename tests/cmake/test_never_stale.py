@@ -324,17 +324,14 @@ def test_all_that_was_read_is_watched_after_the_first_configure(epg: Epg, tmp_pa
     assert "\n".join(reads.unnoticed()) == ""
 
 
+KIND_FILE = "targets/components/pwm_h_bridge/code.c.j2"
 KIND = "static epg_pwm_h_bridge_t {{ c.symbol }};"
-CLOCKS = "soc: firmware\nclocks: {timers: 64 MHz}"
 
 
 @pytest.fixture
 def robot(epg: Epg, tmp_path: Path) -> Iterator[Reads]:
-    """A robot as a program for this computer, and in any firmware; its board is EPG's, with a clock of 64 MHz."""
-    edited = {}
-    for file in ("targets/boards/firmware/board.yaml", "targets/components/pwm_h_bridge/code.c.j2", HEADER):
-        edited[file] = (epg.data / file).read_text(encoding="utf-8")
-    epg.edit("targets/boards/firmware/board.yaml", "soc: firmware", CLOCKS)
+    """A robot as a program for this computer, and in any firmware."""
+    text = (epg.data / KIND_FILE).read_text(encoding="utf-8")
     reads = Reads(around(epg, tmp_path, re.sub(r"\W", "_", tmp_path.name)), epg)
     lists = reads.project.source / "CMakeLists.txt"
     lists.write_text(
@@ -347,58 +344,19 @@ def robot(epg: Epg, tmp_path: Path) -> Iterator[Reads]:
     replace(lamp / "component.yaml", "kind: constant", "kind: lamp")
     replace(reads.project.source / "robot.tcf", "kind: constant", "kind: lamp")
     yield reads
-    for file, text in edited.items():
-        now = (epg.data / file).read_text(encoding="utf-8")
-        if now != text:
-            epg.edit(file, now, text)
-
-
-HEADER = "targets/runtime/include/epg/control.h"
+    now = (epg.data / KIND_FILE).read_text(encoding="utf-8")
+    if now != text:
+        epg.edit(KIND_FILE, now, text)
 
 
 def test_an_edit_of_a_kind_of_epg_is_in_the_next_build(robot: Reads) -> None:
     robot.configure()
-    robot.epg.edit("targets/components/pwm_h_bridge/code.c.j2", KIND, f"{KIND} /* edited */")
+    robot.epg.edit(KIND_FILE, KIND, f"{KIND} /* edited */")
     output = robot.build()
     assert {"robot_app.c", "board_app.c"} <= compiled(output)
     for name in ("robot/robot_app.c", "board/board_app.c"):
         assert "/* edited */" in robot.generated(name)
     assert "Configuring done" not in robot.build()
-
-
-def test_an_edit_of_a_board_of_epg_is_in_the_next_build(robot: Reads) -> None:
-    robot.configure()
-    assert ".top = 3199" in robot.generated("board/board_app.c")
-    robot.epg.edit("targets/boards/firmware/board.yaml", "64 MHz", "32 MHz")
-    assert "board_app.c" in compiled(robot.build())
-    assert ".top = 1599" in robot.generated("board/board_app.c")
-
-
-def test_an_edit_of_a_header_of_the_runtime_is_in_the_next_build(robot: Reads) -> None:
-    robot.configure()
-    robot.build()
-    assert compiled(robot.build()) == set()
-    include = "#include <stdbool.h>"
-    robot.epg.edit(HEADER, include, f"{include}\n#define EDITED 1")
-    assert {"robot_app.c", "board_app.c", "control.c"} <= compiled(robot.build())
-
-
-def test_an_edit_of_the_users_targets_is_in_the_next_build(robot: Reads) -> None:
-    robot.configure()
-    template = robot.own / "components/lamp/code.c.j2"
-    replace(template, "{{ c.parameters['value']|double }}", "(2.0 * {{ c.parameters['value']|double }})")
-    assert "robot_app.c" in compiled(robot.build())
-    assert "(2.0 * 1.0)" in robot.generated("robot/robot_app.c")
-
-
-def test_a_kind_of_the_user_that_comes_first_is_in_the_next_build(robot: Reads) -> None:
-    (robot.own / "components/lamp/notes").mkdir()
-    robot.configure()
-    kind = "components/pwm_h_bridge"
-    shutil.copytree(robot.epg.data / "targets" / kind, robot.own / kind)
-    replace(robot.own / kind / "code.c.j2", KIND, f"{KIND} /* edited */")
-    assert "robot_app.c" in compiled(robot.build())
-    assert "/* edited */" in robot.generated("robot/robot_app.c")
 
 
 def test_an_edit_of_the_search_for_variables_is_in_the_next_build(tmp_path: Path) -> None:
@@ -423,7 +381,7 @@ def test_targets_that_another_start_has_generated_are_watched(robot: Reads) -> N
     (runs,) = {line for line in robot.log.read_text().splitlines() if line.endswith("/robot.runs.txt")}
     assert runs.startswith("opened")
     assert "\n".join(robot.unnoticed()) == ""
-    robot.epg.edit("targets/components/pwm_h_bridge/code.c.j2", KIND, f"{KIND} /* edited */")
+    robot.epg.edit(KIND_FILE, KIND, f"{KIND} /* edited */")
     assert {"robot_app.c", "board_app.c"} <= compiled(robot.build())
     for name in ("robot/robot_app.c", "board/board_app.c"):
         assert "/* edited */" in robot.generated(name)

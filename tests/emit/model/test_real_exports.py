@@ -14,7 +14,7 @@ import pytest
 
 from epg.generator.importers import Model
 from tests.models.direct import has_entry_points, run_c_vectors, run_cpp_class, run_fmu
-from tests.models.harness import build, load, loaded, run_program, run_wrapper
+from tests.models.harness import build, load, loaded, run_wrapper
 from tests.twenty_sim.direct import close, compile_export, difference
 from tests.twenty_sim.generate import generate_from
 
@@ -140,81 +140,3 @@ def test_what_epgs_target_makes_of_their_tokens(path: Path, tmp_path: Path) -> N
         assert close(found, expected, 1e-6)
     else:
         assert not difference(found, expected)
-
-
-@needs_exports
-def test_all_of_them_in_one_program(tmp_path: Path) -> None:
-    """All exports that load, each under its own name, in one program: each gives the same results as alone."""
-    libraries = []
-    for index, path in enumerate(PATHS):
-        model, _ = load(path)
-        if model is not None:
-            libraries.append(build(model, f"model{index}", tmp_path))
-    assert len(libraries) >= 2
-    runs = ""
-    for library in libraries:
-        name, model = library.name, library.model
-        set_all = " ".join(f"in.{port.identifier} = 0.01 * (k % 17) - 0.05;" for port in model.inputs)
-        show = " ".join(f'printf("%a ", out.{port.identifier});' for port in model.outputs)
-        runs += f"""
-static void {name}_run(int first, int last)
-{{
-    static {name}_inputs_t in;
-    static {name}_outputs_t out;
-    for (int k = first; k < last; k++) {{
-        {set_all}
-        if (k == 0) {{ {name}_init({name}_instance(0), &in, &out); }}
-        {name}_step({name}_instance(0), &in, &out);
-    }}
-    if (last == 60) {{ {show} puts(""); }}
-}}
-"""
-    includes = "".join(f'#include "{library.name}.h"\n' for library in libraries) + "#include <stdio.h>\n"
-    halves = "\n".join(f"    {library.name}_run(0, 30);" for library in libraries)
-    rest = "\n".join(f"    {library.name}_run(30, 60);" for library in libraries)
-    together = run_program(
-        tmp_path / "all", f"{includes}{runs}int main(void)\n{{\n{halves}\n{rest}\n    return 0;\n}}\n", libraries
-    )
-    for library, line in zip(libraries, together.splitlines(), strict=True):
-        start = runs.index(f"static void {library.name}_run")
-        own = runs[start : runs.index("\n}\n", start) + 3]
-        text = f'#include "{library.name}.h"\n#include <stdio.h>\n{own}'
-        text += f"int main(void) {{ {library.name}_run(0, 60); return 0; }}\n"
-        assert run_program(tmp_path / library.name / "alone", text, [library]).strip() == line.strip()
-
-
-@needs_exports
-def test_two_instances_of_a_class(tmp_path: Path) -> None:
-    for index, path in enumerate(path for path in PATHS if path.suffix == ".cpp"):
-        model, _ = load(path)
-        if model is None:
-            continue
-        name = f"m{index}"
-        library = build(model, name, tmp_path, instances=2)
-        port = model.inputs[0].identifier
-        show = " ".join(f'printf("%a ", out.{p.identifier});' for p in model.outputs)
-        text = f"""
-#include "{name}.h"
-#include <stdio.h>
-static void run(unsigned i, double value)
-{{
-    static {name}_inputs_t in;
-    {name}_outputs_t out = {{0}};
-    in.{port} = value;
-    {name}_step({name}_instance(i), &in, &out);
-    if (i == 0) {{ {show} puts(""); }}
-}}
-int main(int argc, char **argv)
-{{
-    {name}_inputs_t in = {{0}};
-    {name}_outputs_t out;
-    (void)argv;
-    {name}_init({name}_instance(0), &in, &out);
-    {name}_init({name}_instance(1), &in, &out);
-    for (int k = 0; k < 50; k++) {{ run(0, 0.5); if (argc == 1) {{ run(1, -3.0); }} }}
-    return 0;
-}}
-"""
-        both = run_program(tmp_path / name / "both", text, [library])
-        alone = run_program(tmp_path / name / "alone", text.replace("argc == 1", "argc == 0"), [library])
-        assert both == alone
