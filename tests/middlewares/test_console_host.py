@@ -5,10 +5,8 @@ from __future__ import annotations
 
 import contextlib
 import csv
-import itertools
 import os
 import random
-import re
 import signal
 import stat as stat_module
 import struct
@@ -25,15 +23,6 @@ from .client import Host, Lines, stat, values
 
 MODEL = 140
 """Offset of the model's name in a store: targets/runtime/src/communication/store.c."""
-
-
-def test_setpoints_reach_the_model(jiwy_host: Path) -> None:
-    with Host(jiwy_host) as console:
-        assert console.ask("pan_subscriber=0.1 tilt_subscriber=-2.5e-3") == ["ok setpoint"]
-        assert console.ask("watch setpoint_pan setpoint_tilt") == ["ok watch"]
-        sent = {"inputs.setpoint_pan": 0.1, "inputs.setpoint_tilt": -0.0025}
-        until(lambda: values(console.until("watch ")[-1]) == sent)
-        assert console.close() == (0, "")
 
 
 def test_values_of_a_watch_line_are_of_one_cycle(jiwy_host: Path) -> None:
@@ -156,69 +145,6 @@ def test_the_state_of_the_store_is_told_at_the_start_and_by_version(jiwy_host: P
             assert words in answer[-1]
             assert answer[:-1] == (["refused Pan\\PID\\kp"] if words == "stored=partly" else [])
             assert console.close() == (0, told)
-
-
-def test_a_parameter_takes_effect(jiwy_host: Path) -> None:
-    """Homing uses this duty."""
-    with Host(jiwy_host) as console:
-        assert console.ask("set Pan\\Homing\\duty=0.125") == ["ok set"]
-        console.ask("watch pwm_pan")
-        console.lines.clear()
-        seen = {values(line)["outputs.pwm_pan"] for _ in range(20) for line in console.receive(0.1) if "watch" in line}
-        assert -0.125 in seen
-        console.ask("disable")
-        assert console.ask("enable") == ["ok enable"]  # this initialises the model
-        console.lines.clear()
-        seen = {values(line)["outputs.pwm_pan"] for _ in range(20) for line in console.receive(0.1) if "watch" in line}
-        assert -0.125 in seen and -0.05 not in seen
-
-
-def test_a_capture_has_every_cycle_around_its_trigger(jiwy_host: Path) -> None:
-    with Host(jiwy_host) as console:
-        console.ask("disable")
-        assert console.ask("capture setpoint_pan position_pan rows=200 before=50 when=setpoint_pan>0.5") == [
-            "ok capture rows=200"
-        ]
-        time.sleep(0.1)
-        console.ask("pan_subscriber=0.75")
-        told = console.until("captured ")[-1]
-        assert told == "captured state=ready rows=200 trigger=50"
-        answer = console.ask("capture read")
-        assert answer[-1] == "ok capture"
-        rows = list(csv.reader(line.removeprefix("csv ") for line in answer[:-1]))
-        assert rows[0] == ["time", "inputs.setpoint_pan", "inputs.position_pan"]
-        numbers = [[float(cell) for cell in row] for row in rows[1:]]
-        assert len(numbers) == 200
-        assert [row[1] for row in numbers] == [0.0] * 50 + [0.75] * 150
-        steps = [round((after[0] - before[0]) * 1000, 6) for before, after in itertools.pairwise(numbers)]
-        assert set(steps) <= {float(n) for n in range(1, 200)}  # whole periods; more than one if a tick was missed
-        assert steps.count(1.0) > 150
-
-
-def moved(answer: list[str]) -> dict[str, int]:
-    """The counts that a jog has reported, by encoder."""
-    found = [re.match(r"moved (\w+) count=([-+]?\d+) ", line) for line in answer]
-    return {match[1]: int(match[2]) for match in found if match}
-
-
-def test_jog_moves_one_axis_and_tells_count_and_sign(jiwy_host: Path) -> None:
-    with Host(jiwy_host) as console:
-        assert console.ask("jog pwm_pan 0.1 100")[-1] == "error jog the target is enabled: disable it"
-        console.ask("disable")
-        time.sleep(0.7)  # until both axes, which had begun to home, have stopped
-        forwards = console.ask("jog pwm_pan 0.1 200")
-        assert forwards[-1] == "ok jog"
-        assert moved(forwards)["encoder_pan"] > 20
-        assert abs(moved(forwards)["encoder_tilt"]) <= 1  # its position may be between two counts
-        assert re.match(r"moved encoder_pan count=\+\d+ position=\+0\.\d+ unit=rad$", forwards[0])
-        time.sleep(0.3)
-        assert moved(console.ask("jog pwm_pan -0.1 300"))["encoder_pan"] < -20
-        tilt = moved(console.ask("jog pwm_tilt 0.1 200"))
-        assert tilt["encoder_tilt"] > 5
-        assert console.ask("jog pwm_pan 0.5 100")[-1] == "error jog the duty must be at most 0.2 for this target"
-        assert stat(console.ask("stats"), "faults") == "0"
-        assert console.ask("enable") == ["ok enable"]
-        assert console.close() == (0, "")
 
 
 def test_random_bytes_do_no_harm(jiwy_host: Path) -> None:

@@ -12,15 +12,13 @@ import pytest
 
 from tests.cmake.project import ROOT
 from tests.doubles.toolchain import skip_if_missing, tool
-from tests.doubles.xrce_agent import Agent, float64, read_float64
 from tests.platforms.firmware.builds import PROCESSORS
-from tests.platforms.firmware.socket_link import SocketLink
 
 from .board import HERE, OneCore, image
 
 RUNNING, PRIORITY = 1, 8
 """Errors of ``epg/mcu.h``."""
-FAULT_WATCHDOG, FAULT_PROCESSOR, FAULT_PRIORITY = 11, 12, 15
+FAULT_PROCESSOR, FAULT_PRIORITY = 12, 15
 """Of ``epg/fault.h``."""
 FREE, PRIGROUP = 28, -16
 """Interrupts; the other number stands for the setting of all interrupts."""
@@ -43,23 +41,6 @@ def test_each_tick_has_its_cycle(board: OneCore) -> None:
     assert state.sums > 1000 and state.wrong_sums == 0, "interrupts keep the FPU's registers"
     assert abs(state.timer1_calls - state.time_us / 2500) <= 2, "the program's handler"
     assert abs(state.systick_calls - state.time_us / 1000) <= 5, "the program's handler"
-
-
-def test_it_is_a_node_of_an_agent(board: OneCore) -> None:
-    """On a busy computer, the agent answers late in the board's time: setpoints are sent until the axis is there."""
-    with Agent(SocketLink(board.agent)) as agent:
-        agent.topics.wait_for_reader("rt/pan_subscriber", 120)
-        board.console.ask("enable")
-        newest = []
-        for _ in range(600):
-            agent.topics.publish("rt/pan_subscriber", float64(0.5), reliable=False)
-            state = board.let_pass(50)
-            newest = [read_float64(sample.data) for sample in agent.topics.samples("rt/pan_publisher")[-5:]]
-            if len(newest) == 5 and all(abs(position - 0.5) < 0.02 for position in newest):
-                break
-        assert newest == pytest.approx([0.5] * 5, abs=0.02)
-        assert (state.missed, state.overruns, state.fault, state.wrong_sums) == (0, 0, 0, 0)
-        assert state.lateness_max < LATENESS_NS
 
 
 @pytest.mark.parametrize("order", ["b", "i"], ids=["masked_by_basepri", "interrupt_of_priority_1"])
@@ -163,20 +144,6 @@ def test_it_stops_and_starts_again(board: OneCore) -> None:
     assert (state.missed, state.fault, state.enabled, state.driven) == (0, 0, 0, 0)
 
 
-def test_a_processor_fault_is_reported_after_the_reset(board: OneCore) -> None:
-    """The program's HardFault handler finds safe outputs; it never returns, and the watchdog resets the board."""
-    board.console.ask("enable")
-    assert board.let_pass(50).driven == 2
-    board.give("h")
-    board.console.until("ready ")
-    state = board.let_pass(50)
-    assert (state.faults, state.driven_in_fault) == (1, 0)
-    assert (state.fault, state.enabled, state.driven) == (FAULT_PROCESSOR, 0, 0)
-    assert any("fault=processor" in line for line in board.console.ask("stats"))
-    board.console.ask("enable")
-    assert board.let_pass(50).fault == 0
-
-
 def test_a_fault_handler_that_returns_does_not_let_control_go_on(board: OneCore) -> None:
     """The handler finds the exception as it was, and returns into the cycle, which then switches the motors on."""
     board.console.until("ready ")
@@ -198,16 +165,6 @@ def test_a_fault_of_the_main_stack_resets_at_once(processor: str) -> None:
         board.console.until("ready ")
         state = board.let_pass(50)
         assert (state.faults, state.fault, state.driven) == (0, FAULT_PROCESSOR, 0)
-
-
-def test_the_watchdog_resets_a_board_whose_communication_waits(board: OneCore) -> None:
-    board.console.ask("enable")
-    board.let_pass(50)
-    before = board.order("k")
-    assert before.result == 1
-    board.console.until("ready ")
-    state = board.let_pass(50)
-    assert (state.fault, state.enabled, state.driven, state.faults) == (FAULT_WATCHDOG, 0, 0, 0)
 
 
 def test_a_long_write_to_the_store_is_not_a_silence(board: OneCore) -> None:

@@ -3,20 +3,13 @@
 
 from __future__ import annotations
 
-import contextlib
 import itertools
-import os
 import random
-import select
-import tty
-from collections.abc import Callable, Iterator
-from pathlib import Path
+from collections.abc import Iterator
 
 import pytest
 
-from tests.doubles.toolchain import skip_if_missing
 from tests.doubles.xrce_agent.messages import float64, read_diagnostics, read_float64
-from tests.doubles.xrce_agent.real_agent import RealAgent, free_domain, on_loopback, program
 from tests.platforms.pico.xrce.agent import BoardAgent
 from tests.platforms.pico.xrce.checks import ENDS, PUBLISHED
 from tests.platforms.stm32.agent import agent_of
@@ -107,58 +100,3 @@ def test_noise_on_the_line_disturbs_nothing(board: tuple[Jiwy, BoardAgent]) -> N
     agent.run(20)
     assert {jiwy.rows[-1][f"inputs.setpoint_{axis}"] for axis in AXES} == {0.3}
     assert_undisturbed(jiwy, agent)
-
-
-class Cable:
-    """A terminal for a real agent, whose other end is the UART."""
-
-    def __init__(self, jiwy: Jiwy) -> None:
-        self.jiwy = jiwy
-        self._file, self._terminal = os.openpty()
-        tty.setraw(self._terminal)
-        os.set_blocking(self._file, False)
-        self.path = os.ttyname(self._terminal)
-
-    def run_until(self, condition: Callable[[], bool], cycles: int) -> bool:
-        for _ in range(cycles):
-            if condition():
-                return True
-            if select.select([self._file], [], [], 0)[0]:
-                self.jiwy.line.send(os.read(self._file, 4096))
-            self.jiwy.run(1)
-            with contextlib.suppress(OSError):  # bytes that nobody reads are lost
-                os.write(self._file, self.jiwy.line.take())
-        return False
-
-    def close(self) -> None:
-        os.close(self._file)
-        os.close(self._terminal)
-
-
-def test_it_is_a_node_of_the_real_agent(tmp_path: Path) -> None:
-    """With a peer in CycloneDDS, and after the agent was killed and started again.  The agent runs in real time."""
-    skip_if_missing(program)
-    pytest.importorskip("tests.doubles.ros2_peer.packages", exc_type=ImportError)
-    from tests.doubles.ros2_peer.messages import Float64_, numbers
-    from tests.doubles.ros2_peer.peer import Peer
-
-    jiwy = Jiwy("bare_metal", "xrce")
-    jiwy.run(HOMED)
-    with contextlib.closing(Cable(jiwy)) as cable, on_loopback():
-        real = RealAgent(["serial", "-b", "921600", "-D", cable.path], free_domain(), tmp_path)
-        with real, Peer(real.domain, "peer") as peer:
-            setpoints = peer.publisher("/pan_subscriber", Float64_, reliable=False)
-            positions = peer.subscription("/pan_publisher", Float64_, reliable=False)
-            for setpoint in (0.3, 0.5):
-                seen = len(positions.messages)
-
-                def follows(setpoint: float = setpoint, seen: int = seen) -> bool:
-                    setpoints.publish(Float64_(setpoint))
-                    peer.spin(0.0)
-                    known = numbers(positions.messages[seen:])
-                    return abs(jiwy.angle("pan") - setpoint) < 0.02 and known != [] and abs(known[-1] - setpoint) < 0.02
-
-                assert cable.run_until(follows, 20_000)
-                real.restart()
-    assert jiwy.chip.interrupts(jiwy.timer.kind.update) == jiwy.ticks
-    assert jiwy.chip.dma.errors == jiwy.chip.cache.hazards == jiwy.chip.resets == []

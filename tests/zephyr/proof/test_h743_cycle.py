@@ -16,9 +16,11 @@ import pytest
 
 from tests.doubles.stm32.stm32h743 import Stm32h743
 from tests.doubles.toolchain import arm_gcc, skip_if_missing, unicorn, xrce_libraries
-from tests.zephyr.proof.test_h743 import ENCODERS, OUTPUTS
 from tests.zephyr.workspace import build, c_library, workspace
 
+ENCODERS = (("TIM4", ("D", 12), ("D", 13), 2), ("TIM8", ("C", 6), ("C", 7), 3))
+OUTPUTS = {"pwm_pan": 0x34, "pwm_tilt": 0x38}
+"""Registers CCR1 and CCR2 of timer 1."""
 CYCLES = 200
 STEPS = 12_000
 """Period of the PWM in clock cycles: 240 MHz by 20 kHz."""
@@ -50,13 +52,13 @@ def test_the_controller_homes(image: Path, capsys: pytest.CaptureFixture[str]) -
     chip = Stm32h743(image)
     chip.boot()
     chip.milliseconds = False
-    for timer, a, b, function in ENCODERS.values():
+    for timer, a, b, function in ENCODERS:
         chip.attach(timer, a, b, alternate_function=function)
     chip.call("epg_control_start", chip.symbols["jiwy_control"], chip.symbols["application"])
 
     taken = []
     for number in range(CYCLES):
-        for timer, *_ in ENCODERS.values():
+        for timer, *_ in ENCODERS:
             chip.move(timer, 1 if number % 7 == 0 else 0)
         taken.append(cycle(chip))
         registers = chip.timers["TIM1"].registers

@@ -31,12 +31,6 @@ void hold_basepri(uint32_t milliseconds)
     __set_BASEPRI(0U);
 }
 
-/** The service of the communication side has the lowest priority, so that it cannot run at this one. */
-void stop_communication(void)
-{
-    __set_BASEPRI(SERVICE_PRIORITY << (8U - __NVIC_PRIO_BITS));
-}
-
 int main(void)
 {
     orders_start();

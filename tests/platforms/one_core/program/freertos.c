@@ -31,12 +31,6 @@ void hold_basepri(uint32_t milliseconds)
     taskEXIT_CRITICAL();
 }
 
-/** This task is more urgent than the communication side from now on, and never waits. */
-void stop_communication(void)
-{
-    vTaskPrioritySet(NULL, configMAX_PRIORITIES - 1);
-}
-
 static void run(void *obeys)
 {
     for (;;) {

@@ -19,7 +19,6 @@
  * | `g`   | sets PRIGROUP so that no interrupt can interrupt another one                |
  * | `G`   | sets it back                                                                |
  * | `n`   | stops SysTick                                                               |
- * | `k`   | communication waits without end                                             |
  * | `h`   | executes an undefined instruction                                           |
  * | `f`   | the same within a control cycle; the program's fault handler returns        |
  * | `m`   | the same, with a main stack pointer that points nowhere                     |
@@ -224,9 +223,6 @@ static bool obey(char order)
         return true;
     case 'n':
         SysTick->CTRL = 0U;
-        return true;
-    case 'k':
-        stop_communication();
         return true;
     case 'h':
         __asm volatile("udf #0");

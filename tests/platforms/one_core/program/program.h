@@ -34,7 +34,5 @@ extern volatile uint32_t sums, wrong_sums;
 /* bare_metal.c, freertos.c */
 /** Masks all interrupts that can be masked by BASEPRI for `milliseconds`. */
 void hold_basepri(uint32_t milliseconds);
-/** Stops the communication side.  */
-void stop_communication(void);
 
 #endif
