@@ -12,6 +12,8 @@ from tests.cmake.built import SANITIZERS, built
 from tests.doubles.toolchain import skip_if_missing, xrce_libraries
 from tests.doubles.xrce_agent import Agent, UdpLink
 
+from .board import Board
+
 HERE = Path(__file__).resolve().parent
 
 
@@ -66,3 +68,12 @@ def small_jiwy(jiwy_build: Path) -> Path:
 def agent() -> Iterator[Agent]:
     with Agent(UdpLink()) as made:
         yield made
+
+
+@pytest.fixture
+def board(robot: Path, agent: Agent) -> Iterator[Board]:
+    """It publishes.  At the end, no sanitizer has reported an error."""
+    with Board(robot, agent) as made:
+        made.running()
+        yield made
+        assert made.stop() == ""

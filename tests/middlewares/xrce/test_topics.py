@@ -18,12 +18,9 @@ from .board import Board
 from .checks import check_newest_setpoints, check_period, check_wrong_setpoints
 
 
-def test_a_period_is_20_ms_and_of_one_control_cycle(robot: Path, agent: Agent) -> None:
-    with Board(robot, agent) as board:
-        board.running()
-        steps = check_period(board, count=3, error=0.3)
-        assert statistics.median(steps) == 20
-        assert board.stop() == ""
+def test_a_period_is_20_ms_and_of_one_control_cycle(board: Board) -> None:
+    steps = check_period(board, count=3, error=0.3)
+    assert statistics.median(steps) == 20
 
 
 def test_every_cycle_is_published_once(complete_robot: Path, agent: Agent) -> None:
@@ -44,35 +41,26 @@ def test_every_cycle_is_published_once(complete_robot: Path, agent: Agent) -> No
         assert board.stop() == ""
 
 
-def test_the_newest_setpoint_counts(robot: Path, agent: Agent) -> None:
-    with Board(robot, agent) as board:
-        board.running()
-        check_newest_setpoints(board)
-        assert board.stop() == ""
+def test_the_newest_setpoint_counts(board: Board) -> None:
+    check_newest_setpoints(board)
 
 
-def test_qos_of_peers(robot: Path, agent: Agent) -> None:
+def test_qos_of_peers(board: Board, agent: Agent) -> None:
     """As in ROS 2, a best-effort publisher does not match a reliable subscriber; a reliable one matches all."""
-    with Board(robot, agent) as board:
-        board.running()
-        assert board.set("reliable", 0.5, reliable=False) == 0
-        assert board.set("quick", 0.5, reliable=True) == 1
-        assert board.set("quick", 0.75, reliable=False) == 1
-        board.wait_for("got_quick", 0.75)
-        careful = agent.topics.subscribe("rt/lab/got_quick", reliable=True)
-        default = agent.topics.subscribe("rt/lab/got_reliable", reliable=True)
-        wrong = agent.topics.subscribe("rt/lab/got_reliable", type_name="std_msgs::msg::dds_::Float32_")
-        agent.wait_until(lambda: len(default.samples) > 5)
-        assert careful.samples == [] and wrong.samples == []
-        assert board.values("got_reliable")[-1] == 0.25
-        assert board.stop() == ""
+    assert board.set("reliable", 0.5, reliable=False) == 0
+    assert board.set("quick", 0.5, reliable=True) == 1
+    assert board.set("quick", 0.75, reliable=False) == 1
+    board.wait_for("got_quick", 0.75)
+    careful = agent.topics.subscribe("rt/lab/got_quick", reliable=True)
+    default = agent.topics.subscribe("rt/lab/got_reliable", reliable=True)
+    wrong = agent.topics.subscribe("rt/lab/got_reliable", type_name="std_msgs::msg::dds_::Float32_")
+    agent.wait_until(lambda: len(default.samples) > 5)
+    assert careful.samples == [] and wrong.samples == []
+    assert board.values("got_reliable")[-1] == 0.25
 
 
-def test_what_is_no_number_is_dropped_and_counted(robot: Path, agent: Agent) -> None:
-    with Board(robot, agent) as board:
-        board.running()
-        check_wrong_setpoints(board, [b"", b"\0" * 7])
-        assert board.stop() == ""
+def test_what_is_no_number_is_dropped_and_counted(board: Board) -> None:
+    check_wrong_setpoints(board, [b"", b"\0" * 7])
 
 
 def test_a_timeout_acts_as_declared_and_nothing_else_does(robot: Path, agent: Agent) -> None:
@@ -139,18 +127,15 @@ def test_a_robot_that_ros_has_enabled_stays_so_beside_a_program(
         assert board.diagnostics().state == "enabled"
 
 
-def test_the_enable_topic(robot: Path, agent: Agent) -> None:
-    with Board(robot, agent) as board:
-        board.running()
-        assert board.diagnostics().state == "enabled"
-        board.enable(False)
-        agent.wait_until(lambda: board.diagnostics().state == "disabled")
-        assert board.diagnostics().message == "disabled"
-        cycles = board.next("cycles")
-        board.enable(True)
-        agent.wait_until(lambda: board.diagnostics().state == "enabled")
-        assert board.next("cycles") < cycles  # the model has been initialised
-        assert board.stop() == ""
+def test_the_enable_topic(board: Board, agent: Agent) -> None:
+    assert board.diagnostics().state == "enabled"
+    board.enable(False)
+    agent.wait_until(lambda: board.diagnostics().state == "disabled")
+    assert board.diagnostics().message == "disabled"
+    cycles = board.next("cycles")
+    board.enable(True)
+    agent.wait_until(lambda: board.diagnostics().state == "enabled")
+    assert board.next("cycles") < cycles  # the model has been initialised
 
 
 def test_diagnostics(robot: Path, agent: Agent) -> None:
