@@ -1,39 +1,59 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Projects of robots that no file of EPG describes: a model written by hand, and a board."""
+"""New projects: of JIWY, and of models that are written by hand."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from epg.generator.diagnostics import Diagnostics
 from epg.new.new_project import ProjectRequest, write_project
 
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def write_model(folder: Path, name: str, inputs: Mapping[str, str], outputs: Mapping[str, str]) -> Path:
+    """A model that is written by hand: the declaration of each input, and the C expression of each output."""
+    folder.mkdir()
+    (folder / f"{name}.h").write_text(
+        f"typedef struct {{ double {', '.join(inputs)}; }} in_t;\n"
+        f"typedef struct {{ double {', '.join(outputs)}; }} out_t;\nvoid {name}(const in_t *in, out_t *out);\n"
+    )
+    steps = "".join(f"    out->{port} = {value};\n" for port, value in outputs.items())
+    (folder / f"{name}.c").write_text(
+        f'#include "{name}.h"\n\nvoid {name}(const in_t *in, out_t *out)\n{{\n{steps}}}\n'
+    )
+    (folder / "model.yaml").write_text(
+        f"version: 1\nstep: 1 ms\nheader: {name}.h\nsources: [{name}.c]\n"
+        f"types: {{inputs: in_t, outputs: out_t}}\nfunctions: {{step: {name}}}\ninputs:\n"
+        + "".join(f"  {port}: {unit}\n" for port, unit in inputs.items())
+        + "outputs:\n"
+        + "".join(f"  {port}: {{}}\n" for port in outputs)
+    )
+    return folder
+
+
+def new_project(folder: Path, target: str, model: Path = ROOT / "examples/jiwy/model") -> Path:
+    """The project ``robot`` in ``folder``, as ``epg new`` writes it: of JIWY, or of another model."""
+    write_project(ProjectRequest("robot", folder, target, model), Diagnostics())
+    return folder
+
 
 def axes_project(folder: Path, axes: Sequence[str], target: str = "rpi_pico2_bare_metal") -> Path:
     """A new project for a controller of ``axes``, each with a setpoint, an encoder, a limit switch and a motor."""
-    model = folder / "axes_model"
-    model.mkdir()
-    inputs = [f"{name}_{axis}" for axis in axes for name in ("position", "setpoint", "end")]
-    duties = {f"duty_{axis}": f"setpoint_{axis} - in->position_{axis}" for axis in axes}
-    steps = "".join(
-        f"    out->{duty} = in->end_{duty[5:]} > 0.5 ? 0.0 : in->{error};\n" for duty, error in duties.items()
-    )
-    (model / "axes.h").write_text(
-        f"typedef struct {{ double {', '.join(inputs)}; }} in_t;\n"
-        f"typedef struct {{ double {', '.join(duties)}; }} out_t;\nvoid axes(const in_t *in, out_t *out);\n"
-    )
-    (model / "axes.c").write_text(f'#include "axes.h"\n\nvoid axes(const in_t *in, out_t *out)\n{{\n{steps}}}\n')
-    units = {name: "{}" if name.startswith("end") else "{unit: rad}" for name in inputs}
-    (model / "model.yaml").write_text(
-        "version: 1\nstep: 1 ms\nheader: axes.h\nsources: [axes.c]\ntypes: {inputs: in_t, outputs: out_t}\n"
-        "functions: {step: axes}\ninputs:\n"
-        + "".join(f"  {name}: {unit}\n" for name, unit in units.items())
-        + "outputs:\n"
-        + "".join(f"  {duty}: {{}}\n" for duty in duties)
-    )
-    write_project(ProjectRequest("robot", folder / "robot", target, model), Diagnostics())
-    return folder / "robot"
+    angles = {f"{name}_{axis}": "{unit: rad}" for axis in axes for name in ("position", "setpoint")}
+    ends = {f"end_{axis}": "{}" for axis in axes}
+    duties = {
+        f"duty_{axis}": f"in->end_{axis} > 0.5 ? 0.0 : in->setpoint_{axis} - in->position_{axis}" for axis in axes
+    }
+    return new_project(folder / "robot", target, write_model(folder / "axes_model", "axes", angles | ends, duties))
+
+
+def one_axis_project(folder: Path, target: str) -> Path:
+    """A new project of a model with one axis for JIWY, which has two."""
+    inputs = dict.fromkeys(("position_pan", "setpoint_pan"), "{unit: rad}")
+    model = write_model(folder / "pan", "pan", inputs, {"pwm_pan": "in->setpoint_pan"})
+    return new_project(folder / "robot", target, model)
 
 
 def jiwy_export_project(folder: Path) -> Path:
@@ -41,24 +61,9 @@ def jiwy_export_project(folder: Path) -> Path:
 
     It has no output that resets an encoder.
     """
-    model = folder / "export"
-    model.mkdir()
-    inputs, outputs = ("MeasuredPan", "MeasuredTilt", "SetPointPan", "SetPointTilt"), ("SteeringPan", "SteeringTilt")
-    (model / "export.h").write_text(
-        f"typedef struct {{ double {', '.join(inputs)}; }} in_t;\n"
-        f"typedef struct {{ double {', '.join(outputs)}; }} out_t;\nvoid run(const in_t *in, out_t *out);\n"
-    )
-    steps = "".join(f"    out->Steering{axis} = in->SetPoint{axis} - in->Measured{axis};\n" for axis in ("Pan", "Tilt"))
-    (model / "export.c").write_text(f'#include "export.h"\n\nvoid run(const in_t *in, out_t *out)\n{{\n{steps}}}\n')
-    (model / "model.yaml").write_text(
-        "version: 1\nstep: 1 ms\nheader: export.h\nsources: [export.c]\ntypes: {inputs: in_t, outputs: out_t}\n"
-        "functions: {step: run}\ninputs:\n"
-        + "".join(f"  {name}: {{unit: rad}}\n" for name in inputs)
-        + "outputs:\n"
-        + "".join(f"  {name}: {{}}\n" for name in outputs)
-    )
-    write_project(ProjectRequest("robot", folder / "robot", "host_jiwy", model), Diagnostics())
-    return folder / "robot"
+    inputs = dict.fromkeys(("MeasuredPan", "MeasuredTilt", "SetPointPan", "SetPointTilt"), "{unit: rad}")
+    outputs = {f"Steering{axis}": f"in->SetPoint{axis} - in->Measured{axis}" for axis in ("Pan", "Tilt")}
+    return new_project(folder / "robot", "host_jiwy", write_model(folder / "export", "run", inputs, outputs))
 
 
 def with_second_target(folder: Path) -> Path:

@@ -23,13 +23,11 @@ from epg.generator.catalog.catalog import load_catalog
 from epg.generator.data import targets_roots
 from epg.generator.diagnostics import Diagnostics
 from epg.generator.tools.tools import load_tools
-from epg.new.new_project import ProjectRequest, write_project
 from tests.connect.builds import job_of, processes, run
+from tests.connect.robots import ROOT, new_project
 from tests.doubles.toolchain import arm_gcc, pico_sdk, skip_if_missing
 from tests.waiting import until
 
-ROOT = Path(__file__).resolve().parents[2]
-MODEL = ROOT / "examples/jiwy/model"
 COMPONENT = "position_pan: encoder_pan"
 
 
@@ -328,7 +326,7 @@ def test_the_commands_are_those_a_person_types(robot: Path, tmp_path: Path, monk
     commands, _ = plan_of(job_of(robot))
     build = str(robot / "build")
     assert commands == [("-S", str(robot), "-B", build), ("--build", build)], "as the folder was configured"
-    write_project(ProjectRequest("robot", tmp_path / "new", "host_jiwy", MODEL), Diagnostics())
+    new_project(tmp_path / "new", "host_jiwy")
     commands, _ = plan_of(job_of(tmp_path / "new"))
     if shutil.which("ninja") is None:
         pytest.skip("Ninja is not installed: sudo apt install ninja-build")

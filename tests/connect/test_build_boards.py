@@ -16,12 +16,10 @@ from epg.generator.catalog.catalog import load_catalog
 from epg.generator.check.configuration import Configuration
 from epg.generator.diagnostics import Diagnostics
 from epg.generator.project import load_configuration
-from epg.new.new_project import ProjectRequest, write_project
 from tests.connect.builds import job_of, run
+from tests.connect.robots import new_project
 from tests.doubles.toolchain import arm_gcc, pico_sdk, skip_if_missing
 from tests.zephyr.workspace import NATIVE, Missing, workspace
-
-MODEL = Path(__file__).resolve().parents[2] / "examples/jiwy/model"
 
 
 @pytest.fixture
@@ -48,7 +46,7 @@ def test_a_program_of_zephyr_by_west(tmp_path: Path, monkeypatch: pytest.MonkeyP
     for name, value in here.environment().items():
         monkeypatch.setenv(name, value)
     monkeypatch.setenv("ZEPHYR_TOOLCHAIN_VARIANT", "host")
-    write_project(ProjectRequest("robot", tmp_path / "robot", "native_sim_jiwy", MODEL), Diagnostics())
+    new_project(tmp_path / "robot", "native_sim_jiwy")
     job = replace(job_of(tmp_path / "robot"), board=NATIVE)
     assert job.built_by == "west"
     plan = make_plan(replace(job, board=""), load(job))

@@ -23,14 +23,13 @@ from epg.connect.session import Session
 from epg.generator.diagnostics import Diagnostics
 from epg.generator.project import load_application
 from epg.generator.tools import uf2_drives, usb_boards
-from epg.new.new_project import ProjectRequest, write_project
 from epg.system import flash
 from tests.connect.builds import job_of
 from tests.connect.page import Denied, serving, session_of
+from tests.connect.robots import new_project
 from tests.system.test_flash import FIRST, OPENOCD, PICOTOOL, PROBE, SECOND, usb
 from tests.waiting import until
 
-MODEL = Path(__file__).resolve().parents[2] / "examples/jiwy/model"
 WEST = r"""
 import os, sys
 here = os.path.dirname(os.path.abspath(__file__))
@@ -87,8 +86,7 @@ def drive(tmp_path: Path, name: str, board: str) -> Path:
 
 def robot(tmp_path: Path, target: str = "rpi_pico_bare_metal_jiwy") -> tuple[Job, list[Path]]:
     """A project, and its products as a build would make them."""
-    write_project(ProjectRequest("robot", tmp_path / "robot", target, MODEL), Diagnostics())
-    folder = tmp_path / "robot/build"
+    folder = new_project(tmp_path / "robot", target) / "build"
     folder.mkdir()
     made = [folder / "robot_firmware.uf2", folder / "robot_firmware.elf"]
     made[0].write_bytes(bytes(range(256)) * 1000)
@@ -163,19 +161,8 @@ def test_without_a_board_the_button_to_press_is_named(tools: Path, tmp_path: Pat
 def test_picotool_writes_to_the_chosen_one_of_two_boards(tools: Path, tmp_path: Path) -> None:
     job, made = robot(tmp_path)
     attach(tmp_path, pico(FIRST, "robot"), pico(SECOND))
-    usb(
-        tmp_path / "usb", "1-1", idVendor="2e8a", idProduct="000a", serial=FIRST, product="Pico", busnum="1", devnum="4"
-    )
-    usb(
-        tmp_path / "usb",
-        "1-2",
-        idVendor="2e8a",
-        idProduct="000a",
-        serial=SECOND,
-        product="Pico",
-        busnum="1",
-        devnum="5",
-    )
+    plug(tmp_path, "1-1", "2e8a:000a", FIRST, "Pico", "4")
+    plug(tmp_path, "1-2", "2e8a:000a", SECOND, "Pico", "5")
     found = boards(job, made)
     assert [board.shown for board in found.found] == [f"Pico {FIRST}", f"Pico {SECOND}"]
     state = write(found)
@@ -193,9 +180,7 @@ def test_picotool_writes_to_the_chosen_one_of_two_boards(tools: Path, tmp_path: 
 def test_the_program_of_another_target_is_replaced_only_on_request(tools: Path, tmp_path: Path) -> None:
     job, made = robot(tmp_path)
     attach(tmp_path, pico(FIRST, "leader"))
-    usb(
-        tmp_path / "usb", "1-1", idVendor="2e8a", idProduct="000a", serial=FIRST, product="Pico", busnum="1", devnum="4"
-    )
+    plug(tmp_path, "1-1", "2e8a:000a", FIRST, "Pico", "4")
     found = boards(job, made)
     state = write(found)
     (message,) = state["messages"]  # type: ignore[misc]
@@ -227,16 +212,7 @@ def test_a_device_that_the_user_may_not_use(tools: Path, tmp_path: Path) -> None
         'print("No accessible RP-series devices in BOOTSEL mode were found.\\n\\nbut:\\n\\nDevice at bus 1, address 4 '
         'appears to be a RP2040 device in BOOTSEL mode, but picotool was unable to connect.")\nraise SystemExit(249)\n'
     )
-    usb(
-        tmp_path / "usb",
-        "1-1",
-        idVendor="2e8a",
-        idProduct="0003",
-        serial="",
-        product="RP2 Boot",
-        busnum="1",
-        devnum="4",
-    )
+    plug(tmp_path, "1-1", "2e8a:0003", "", "RP2 Boot", "4")
     found = boards(job, made)
     assert found.found[0].shown == "RP2 Boot at bus 1, address 4"
     (message,) = write(found)["messages"]  # type: ignore[misc]
@@ -247,16 +223,7 @@ def test_openocd_writes_to_a_nucleo(tools: Path, tmp_path: Path) -> None:
     job, made = robot(tmp_path, "nucleo_h743zi_bare_metal_jiwy")
     attach(tmp_path, nucleos=[{"probe": PROBE, "idcode": "10036450"}])
     assert boards(job, made[1:]).hint == "Connect its debug probe by USB, and look again"
-    usb(
-        tmp_path / "usb",
-        "1-1",
-        idVendor="0483",
-        idProduct="374e",
-        serial=PROBE,
-        product="STLINK-V3",
-        busnum="1",
-        devnum="4",
-    )
+    plug(tmp_path, "1-1", "0483:374e", PROBE, "STLINK-V3", "4")
     found = boards(job, made[1:])
     assert [board.shown for board in found.found] == [f"STLINK-V3 {PROBE}"]
     assert write(found)["state"] == "done"

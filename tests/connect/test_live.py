@@ -22,15 +22,13 @@ from urllib.parse import urlsplit
 import pytest
 
 from epg.connect.server import SECRET
-from epg.generator.diagnostics import Diagnostics
-from epg.new.new_project import ProjectRequest, write_project
 from tests.connect.page import Denied, Page, serving, session_of
+from tests.connect.robots import ROOT, new_project
 from tests.doubles.network import bridge
 from tests.live.target import LATE, LEASE, Target, check_every_cycle_has_a_row, client_of
 from tests.live.udp_target import UdpTarget
 from tests.waiting import until
 
-ROOT = Path(__file__).resolve().parents[2]
 PERIOD = 0.001
 """Seconds of a control cycle."""
 
@@ -428,8 +426,7 @@ def test_every_cycle_around_a_trigger_is_recorded(page: Page, target: Target) ->
 
 
 def test_the_target_is_compared_with_its_simulation(tmp_path: Path, target: Target) -> None:
-    folder = tmp_path / "robot"
-    write_project(ProjectRequest("robot", folder, "host_jiwy", ROOT / "examples/jiwy/model"), Diagnostics())
+    folder = new_project(tmp_path / "robot", "host_jiwy")
     with serving(session_of(folder)) as page:
         _, events = watch(page, target)
         with pytest.raises(Denied, match="was not enabled while the page was connected"):

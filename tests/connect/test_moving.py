@@ -20,9 +20,10 @@ from epg.generator.catalog.catalog import load_catalog
 from epg.generator.data import targets_roots
 from epg.generator.diagnostics import Diagnostics
 from epg.generator.project import load_configuration
-from epg.new.new_project import ProjectRequest, new_project, write_project
-from tests.connect.conftest import ROOT, one_axis_project
+from epg.new.new_project import ProjectRequest, new_project
+from tests.connect import robots
 from tests.connect.page import session_of
+from tests.connect.robots import ROOT, one_axis_project
 from tests.doubles.toolchain import arm_gcc, pico_sdk, skip_if_missing
 
 TCF = """# my axis
@@ -211,7 +212,7 @@ def test_another_computer_for_a_known_robot(tmp_path: Path) -> None:
     """The plant of a host's project is not in the call of a board's project, but in its simulation."""
     folder = tmp_path / "robot"
     model = Path(shutil.copytree(ROOT / "examples/jiwy/model", tmp_path / "camera"))
-    write_project(ProjectRequest("robot", folder, "host_jiwy", model), Diagnostics())
+    robots.new_project(folder, "host_jiwy", model)
     editor = editor_of(folder)
     values, changes = listed(editor, "rpi_pico_bare_metal_jiwy")
     assert values["changed"] == {"extends": "host_jiwy.tcf -> rpi_pico_bare_metal_jiwy.tcf"}
@@ -219,8 +220,7 @@ def test_another_computer_for_a_known_robot(tmp_path: Path) -> None:
     assert changes["simulation/plant.bindings.yaml"] == "written"
     state = moved(editor, "rpi_pico_bare_metal_jiwy")
     assert state["diagnostics"] == []
-    new = tmp_path / "new"
-    write_project(ProjectRequest("robot", new, "rpi_pico_bare_metal_jiwy", model), Diagnostics())
+    new = robots.new_project(tmp_path / "new", "rpi_pico_bare_metal_jiwy", model)
     for path in new.rglob("*"):
         if path.is_file() and path.name != "robot.tcf":
             assert (folder / path.relative_to(new)).read_bytes() == path.read_bytes(), path

@@ -12,20 +12,17 @@ from urllib.parse import quote
 
 import pytest
 
-from epg.generator.diagnostics import Diagnostics
-from epg.new.new_project import ProjectRequest, write_project
 from tests.connect.builds import processes
 from tests.connect.page import Denied, Page, serving, session_of
+from tests.connect.robots import new_project
 from tests.connect.started import generate
 from tests.waiting import until
-
-ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("programs") / "a robot"
-    write_project(ProjectRequest("robot", folder, "host_jiwy", ROOT / "examples/jiwy/model"), Diagnostics())
+    new_project(folder, "host_jiwy")
     with serving(session_of(folder)) as page:
         assert generate(page)["state"] == "done"
     return folder

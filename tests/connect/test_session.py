@@ -19,11 +19,8 @@ from epg.connect.session import Session
 from epg.generator.correction import correction
 from epg.generator.diagnostics import Diagnostic, Diagnostics
 from epg.generator.source import Span
-from tests.connect.conftest import one_axis_project
 from tests.connect.page import Denied, Page, serving, session_of
-from tests.connect.robots import jiwy_export_project
-
-ROOT = Path(__file__).resolve().parent.parent.parent
+from tests.connect.robots import ROOT, jiwy_export_project, one_axis_project
 
 
 def test_a_port_is_connected_and_saved(page: Page, bindings: Path) -> None:

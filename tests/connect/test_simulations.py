@@ -9,12 +9,9 @@ from pathlib import Path
 import pytest
 
 from epg.connect.run.find_simulation import simulations_of
-from epg.generator.diagnostics import Diagnostics
-from epg.new.new_project import ProjectRequest, write_project
 from tests.connect.builds import job_of
 from tests.connect.page import Denied, serving, session_of
-
-ROOT = Path(__file__).resolve().parents[2]
+from tests.connect.robots import ROOT, new_project
 
 
 def found(folder: Path) -> list[tuple[str, str, str]]:
@@ -31,7 +28,7 @@ def test_a_board_is_simulated_by_the_project_beside_it(project: Path) -> None:
 def test_a_host_project_has_its_scenarios_but_none_in_real_time(tmp_path: Path) -> None:
     shutil.copytree(ROOT / "examples/jiwy", tmp_path / "jiwy", ignore=shutil.ignore_patterns("build"))
     assert found(tmp_path / "jiwy") == [("tracking", "jiwy_host", "tracking.yaml")]
-    write_project(ProjectRequest("robot", tmp_path / "robot", "host_jiwy", ROOT / "examples/jiwy/model"), Diagnostics())
+    new_project(tmp_path / "robot", "host_jiwy")
     assert found(tmp_path / "robot") == [("robot_simulation", "robot_host", "scenario.yaml")]
     lists = tmp_path / "robot/CMakeLists.txt"
     lists.write_text(lists.read_text().replace("epg_add_simulation(", "# epg_add_simulation("))
@@ -76,7 +73,7 @@ def test_the_commands_of_a_simulation_are_shown_before_the_first(
 
 def test_proposed_wires_are_connected_only_after_consent(tmp_path: Path) -> None:
     model = Path(shutil.copytree(ROOT / "examples/relbot/model", tmp_path / "model"))
-    write_project(ProjectRequest("robot", tmp_path / "robot", "host_relbot", model), Diagnostics())
+    new_project(tmp_path / "robot", "host_relbot", model)
     with serving(session_of(tmp_path / "robot")) as page:
         before = (tmp_path / "robot/robot.bindings.yaml").read_text()
         state = page.post("simulate")

@@ -13,9 +13,7 @@ from typing import Any
 import pytest
 import yaml
 
-from epg.generator.diagnostics import Diagnostics
-from epg.new.new_project import ProjectRequest, write_project
-from tests.connect.robots import jiwy_export_project
+from tests.connect.robots import jiwy_export_project, new_project
 
 from .acts import drag, field, handle, port, save, until
 from .conftest import Project, copy_jiwy
@@ -356,8 +354,7 @@ def test_each_remedy_of_homing_is_a_button(open_page: Open, tmp_path: Path) -> N
 
 
 def test_two_remedies_are_two_buttons(open_page: Open, tmp_path: Path) -> None:
-    folder = tmp_path / "robot"
-    write_project(ProjectRequest("robot", folder, "host_jiwy", ROOT / "examples/jiwy/model"), Diagnostics())
+    folder = new_project(tmp_path / "robot", "host_jiwy")
     bindings = folder / "robot.bindings.yaml"
     right = bindings.read_text()
     bindings.write_text(right.replace("encoder_tilt.reset", "unconnected"))

@@ -9,12 +9,11 @@ from typing import Any
 
 import pytest
 
-from epg.generator.diagnostics import Diagnostics
-from epg.new.new_project import ProjectRequest, write_project
+from tests.connect.robots import new_project
 
 from .acts import field, until
 from .conftest import Project
-from .served import ROOT, Served
+from .served import Served
 
 Open = Callable[..., Any]
 PATIENT = 60_000  # milliseconds for a build on a computer with high load
@@ -107,9 +106,7 @@ def test_missing_tools_come_with_their_commands_at_once(
     monkeypatch.setenv("EPG_CACHE", str(tmp_path / "cache"))
     monkeypatch.delenv("PICO_SDK_PATH", raising=False)
     folder = tmp_path / "robot"
-    write_project(
-        ProjectRequest("robot", folder, "rpi_pico_freertos_jiwy", ROOT / "examples/jiwy/model"), Diagnostics()
-    )
+    new_project(folder, "rpi_pico_freertos_jiwy")
     with Served(folder) as epg:
         page = open_page(epg.address, permissions=["clipboard-read", "clipboard-write"])
         page.get_by_role("button", name="Generate", exact=True).click()

@@ -9,37 +9,22 @@ from typing import Any
 
 import pytest
 
+from tests.connect.robots import write_model
+
 from .acts import field, handle, until
 from .served import Served
 
 Open = Callable[..., Any]
 PORTS, COMPONENTS = 30, 40  # in each direction
+SIDES = {"in": "{}", "out": "0.0"}
 
 BOTTOM = "(({scrollTop: y, clientHeight: h, scrollHeight: all}) => y + h > all - 2)(document.getElementById('main'))"
 
 
 @pytest.fixture
 def large(browser: Any, tmp_path: Path) -> Iterator[Served]:
-    model = tmp_path / "model"
-    model.mkdir()
-    members = {side: [f"{side}_{n}" for n in range(PORTS)] for side in ("in", "out")}
-    fields = {side: " ".join(f"double {name};" for name in names) for side, names in members.items()}
-    (model / "large.h").write_text(
-        f"typedef struct {{ {fields['in']} }} large_in_t;\ntypedef struct {{ {fields['out']} }} large_out_t;\n"
-        "void large_step(const large_in_t *in, large_out_t *out);\n",
-        encoding="utf-8",
-    )
-    (model / "large.c").write_text(
-        '#include "large.h"\nvoid large_step(const large_in_t *in, large_out_t *out) { out->out_0 = in->in_0; }\n',
-        encoding="utf-8",
-    )
-    ports = {side: "".join(f"  {name}: {{}}\n" for name in names) for side, names in members.items()}
-    (model / "model.yaml").write_text(
-        "version: 1\nstep: 1 ms\nheader: large.h\nsources: [large.c]\n"
-        "types: {inputs: large_in_t, outputs: large_out_t}\nfunctions: {step: large_step}\n"
-        f"inputs:\n{ports['in']}outputs:\n{ports['out']}",
-        encoding="utf-8",
-    )
+    inputs, outputs = (dict.fromkeys((f"{side}_{n}" for n in range(PORTS)), value) for side, value in SIDES.items())
+    model = write_model(tmp_path / "model", "large", inputs, outputs)
     components = "".join(
         f"  command_{n}: {{kind: ros_subscriber, topic: command_{n}, unit: rad}}\n"
         f"  value_{n}: {{kind: ros_publisher, topic: value_{n}}}\n"

@@ -14,8 +14,8 @@ from typing import Any
 import pytest
 
 from epg.connect.session import Session
-from tests.connect.conftest import ROOT, one_axis_project
 from tests.connect.page import session_of
+from tests.connect.robots import ROOT, one_axis_project
 from tests.connect.test_overview import write_pair
 from tests.doubles.toolchain import npm_package, skip_if_missing
 from tests.waiting import until
