@@ -16,14 +16,10 @@ from epg.cli.main import COMMANDS, main
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 JIWY = ROOT / "examples" / "jiwy"
-FILES = [
-    "--tcf",
-    "rpi_pico2_freertos_jiwy",
-    "--model",
-    str(JIWY / "model"),
-    "--bindings",
-    str(JIWY / "jiwy.bindings.yaml"),
-]
+MODEL = ["--model", str(JIWY / "model"), "--bindings", str(JIWY / "jiwy.bindings.yaml")]
+FILES = ["--tcf", "rpi_pico2_freertos_jiwy", *MODEL]
+ROBOT = ["--tcf", "robot.tcf", "--model", "model", "--bindings", "bindings.yaml"]
+HOST = ["--tcf", "host.tcf", *ROBOT[2:]]
 
 
 @pytest.fixture
@@ -101,8 +97,7 @@ def test_a_package_from_pythonpath_is_blamed(robot: Path, tmp_path: Path, text: 
 def test_a_folder_that_cannot_be_written_is_status_4(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (robot / "host.tcf").write_text((robot / "robot.tcf").read_text().replace("rpi_pico_bare_metal", "host"))
     (robot / "out").write_text("a file where the folder should be")
-    files = ["--tcf", "host.tcf", "--model", "model", "--bindings", "bindings.yaml"]
-    assert main(["generate", "robot", *files, "--output", "out"]) == 4
+    assert main(["generate", "robot", *HOST, "--output", "out"]) == 4
     assert "Traceback" not in capsys.readouterr().err
 
 
@@ -114,7 +109,7 @@ def test_the_folder_of_data(name: str, capsys: pytest.CaptureFixture[str]) -> No
 
 def test_check_alone_and_together(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", "robot.tcf"]) == 0
-    assert main(["check", "--tcf", "robot.tcf", "--model", "model", "--bindings", "bindings.yaml"]) == 0
+    assert main(["check", *ROBOT]) == 0
     assert main(["check", *FILES]) == 0
     assert capsys.readouterr().out == "no errors\n" * 3
 
@@ -201,7 +196,7 @@ def test_explain_shows_the_whole_way(capsys: pytest.CaptureFixture[str]) -> None
 
 
 def test_explain_names_the_pins_as_the_chip_does(capsys: pytest.CaptureFixture[str]) -> None:
-    files = ["nucleo_h743zi_zephyr_jiwy.tcf", *FILES[2:]]
+    files = ["nucleo_h743zi_zephyr_jiwy.tcf", *MODEL]
     assert main(["explain", "position_pan", "--name", "jiwy", "--tcf", *files]) == 0
     text = capsys.readouterr().out
     rows = [line.split() for line in text.splitlines() if line.split()[0] == "pin"]
@@ -214,17 +209,16 @@ def test_explain_names_the_pins_as_the_chip_does(capsys: pytest.CaptureFixture[s
 def test_explain_tells_the_frequency_that_is_reached(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = (robot / "robot.tcf").read_text()
     assert text.count("frequency: 20 kHz") == 1
-    files = ["--tcf", "robot.tcf", "--model", "model", "--bindings", "bindings.yaml"]
-    assert main(["explain", "motor", *files]) == 0
+    assert main(["explain", "motor", *ROBOT]) == 0
     assert "frequency     20 kHz                  pwm: 6250 steps\n" in capsys.readouterr().out + "\n"
     (robot / "robot.tcf").write_text(text.replace("20 kHz", "1.5 MHz"))
-    assert main(["explain", "motor", *files]) == 0
+    assert main(["explain", "motor", *ROBOT]) == 0
     shown = capsys.readouterr().out
     assert "1.50602 MHz" in shown  # 125 MHz / 83
     assert "pwm: 83 steps; 1.5 MHz requested, +0.4 %" in shown
     for pin in ("GPIO 2                  value", "GPIO 7                  direction_a", "direction_b"):
         assert pin in shown
-    assert main(["explain", "motor", "--json", *files]) == 0
+    assert main(["explain", "motor", "--json", *ROBOT]) == 0
     divider = json.loads(capsys.readouterr().out)[0]["resources"]["dividers"]["pwm"]
     assert divider["reached"] == 125e6 / 83
     assert divider["error"] == pytest.approx(125 / 83 / 1.5 - 1)
@@ -244,7 +238,7 @@ def test_check_lists_the_hardware(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_the_start_of_outputs_is_shown(capsys: pytest.CaptureFixture[str]) -> None:
-    files = ["nucleo_h743zi_bare_metal_jiwy.tcf", *FILES[2:]]
+    files = ["nucleo_h743zi_bare_metal_jiwy.tcf", *MODEL]
     assert main(["check", "--hardware", files[0]]) == 0
     lines = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert "pwm_pan.pwm timer TIM1, channel CH1 value PE9 20 kHz 10000 steps; started by TIM15".split() in lines
@@ -270,8 +264,7 @@ def test_explain_shows_conversions(robot: Path, capsys: pytest.CaptureFixture[st
     (robot / "bindings.yaml").write_text(
         text.replace("angle: encoder", "angle: {from: encoder, unit: deg, limits: [-90, 90]}")
     )
-    files = ["--tcf", "robot.tcf", "--model", "model", "--bindings", "bindings.yaml"]
-    assert main(["explain", "angle", *files]) == 0
+    assert main(["explain", "angle", *ROBOT]) == 0
     shown = capsys.readouterr().out
     assert "value * 57.29577951308232" in shown
     assert "rad -> deg" in shown
@@ -282,8 +275,7 @@ def test_explain_reads_a_build_folder(robot: Path, capsys: pytest.CaptureFixture
     assert main(["explain", "angle", "--build", "."]) == 1
     assert "there is no generated target here" in capsys.readouterr().err
     (robot / "host.tcf").write_text((robot / "robot.tcf").read_text().replace("rpi_pico_bare_metal", "host"))
-    arguments = ["--tcf", "host.tcf", "--model", "model", "--bindings", "bindings.yaml", "--output", "build/epg/robot"]
-    assert main(["generate", "robot", *arguments]) == 0
+    assert main(["generate", "robot", *HOST, "--output", "build/epg/robot"]) == 0
     assert main(["explain", "angle"]) == 0
     assert "robot (host)" in capsys.readouterr().out
     assert main(["explain", "angel"]) == 1
@@ -292,19 +284,7 @@ def test_explain_reads_a_build_folder(robot: Path, capsys: pytest.CaptureFixture
 
 def test_generate_says_what_it_wrote(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (robot / "host.tcf").write_text((robot / "robot.tcf").read_text().replace("rpi_pico_bare_metal", "host"))
-    arguments = [
-        "generate",
-        "robot",
-        "--tcf",
-        "host.tcf",
-        "--model",
-        "model",
-        "--bindings",
-        "bindings.yaml",
-        "--output",
-        "out",
-        "--json",
-    ]
+    arguments = ["generate", "robot", *HOST, "--output", "out", "--json"]
     assert main(arguments) == 0
     first = json.loads(capsys.readouterr().out)
     assert set(first["written"]) == set(first["files"]) >= {"robot.h", "robot_app.c", "robot.cmake", "robot.json"}

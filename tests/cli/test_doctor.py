@@ -126,11 +126,16 @@ def test_picotool_is_built_with_an_sdk_and_with_usb(bare: Path, capsys: pytest.C
     assert f" -DPICO_SDK_PATH={here.as_posix()} " in items["picotool"]["remedy"]
 
 
-def test_one_project(bare: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (bare / "CMakeLists.txt").write_text(
-        f"project(x C)\nepg_add_target(jiwy TCF rpi_pico_freertos_jiwy.tcf MODEL {ROOT}/examples/jiwy/model\n"
-        f"  BINDINGS {ROOT}/examples/jiwy/jiwy.bindings.yaml SET communication.middleware=xrce)\n"
+def project(folder: Path, tcf: str, more: str = "") -> None:
+    """The CMakeLists.txt of a project with one target."""
+    (folder / "CMakeLists.txt").write_text(
+        f"project(x C)\nepg_add_target(jiwy TCF {tcf} MODEL {ROOT}/examples/jiwy/model\n"
+        f"  BINDINGS {ROOT}/examples/jiwy/jiwy.bindings.yaml {more})\n"
     )
+
+
+def test_one_project(bare: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    project(bare, "rpi_pico_freertos_jiwy.tcf", "SET communication.middleware=xrce")
     assert main(["doctor", "--project", str(bare)]) == 4
     text = capsys.readouterr().out
     assert "Micro-CDR" in text and "FreeRTOS kernel" in text and "Zephyr" not in text
@@ -143,10 +148,7 @@ def test_one_project(bare: Path, capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_a_project_with_headers_of_its_own(bare: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (bare / "CMakeLists.txt").write_text(
-        f"project(x C)\nepg_add_target(jiwy TCF nucleo_h743zi_freertos_jiwy.tcf MODEL {ROOT}/examples/jiwy/model\n"
-        f"  BINDINGS {ROOT}/examples/jiwy/jiwy.bindings.yaml)\n"
-    )
+    project(bare, "nucleo_h743zi_freertos_jiwy.tcf")
     for file, left in (
         ("Drivers/CMSIS/Include/core_cm7.h", {"cmsis_device_h7"}),
         ("Drivers/CMSIS/Device/ST/STM32H7xx/Include/stm32h7xx.h", set()),
@@ -160,10 +162,7 @@ def test_a_project_with_headers_of_its_own(bare: Path, capsys: pytest.CaptureFix
 
 
 def test_a_project_with_usb(bare: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (bare / "CMakeLists.txt").write_text(
-        f"project(x C)\nepg_add_target(jiwy TCF nucleo_h743zi_freertos_jiwy.tcf MODEL {ROOT}/examples/jiwy/model\n"
-        f"  BINDINGS {ROOT}/examples/jiwy/jiwy.bindings.yaml SET communication.transport=usb)\n"
-    )
+    project(bare, "nucleo_h743zi_freertos_jiwy.tcf", "SET communication.transport=usb")
     main(["doctor", "--json", "--project", str(bare)])
     assert "tinyusb" in {item["name"] for item in json.loads(capsys.readouterr().out)["items"]}
 

@@ -18,138 +18,63 @@ from epg.cli.messages import find_entry
 ROOT = Path(__file__).resolve().parent.parent.parent
 FILES = ["--tcf", "robot.tcf", "--model", "model", "--bindings", "bindings.yaml"]
 
-_MESSAGE = {"type": "object", "properties": {"text": {"type": "string", "minLength": 1}}, "required": ["text"]}
+
+def closed(*required: str, **properties: object) -> dict[str, Any]:
+    """The schema of an object that has no other properties than these."""
+    return {"type": "object", "properties": properties, "required": list(required), "additionalProperties": False}
+
+
+def several(items: object) -> dict[str, Any]:
+    return {"type": "array", "minItems": 1, "items": items}
+
+
+_TEXT = {"type": "string"}
 _POSITIVE = {"type": "integer", "minimum": 1}
-_LOCATION: dict[str, Any] = {
-    "type": "object",
-    "properties": {
-        "id": {"type": "integer", "minimum": 0},
-        "message": _MESSAGE,
-        "physicalLocation": {
-            "type": "object",
-            "properties": {
-                "artifactLocation": {
-                    "type": "object",
-                    "properties": {"uri": {"type": "string", "pattern": "^[^\\\\ ]+$"}},
-                    "required": ["uri"],
-                    "additionalProperties": False,
-                },
-                "region": {
-                    "type": "object",
-                    "properties": dict.fromkeys(("startLine", "startColumn", "endLine", "endColumn"), _POSITIVE),
-                    "required": ["startLine"],
-                    "additionalProperties": False,
-                },
-            },
-            "required": ["artifactLocation"],
-            "additionalProperties": False,
-        },
-        "logicalLocations": {"type": "array", "minItems": 1},
-    },
-    "additionalProperties": False,
-}
-_FIX = {
-    "type": "object",
-    "properties": {
-        "description": _MESSAGE,
-        "artifactChanges": {
-            "type": "array",
-            "minItems": 1,
-            "items": {
-                "type": "object",
-                "properties": {
-                    "artifactLocation": _LOCATION["properties"]["physicalLocation"]["properties"]["artifactLocation"],
-                    "replacements": {
-                        "type": "array",
-                        "minItems": 1,
-                        "items": {
-                            "type": "object",
-                            "properties": {
-                                "deletedRegion": _LOCATION["properties"]["physicalLocation"]["properties"]["region"],
-                                "insertedContent": _MESSAGE,
-                            },
-                            "required": ["deletedRegion"],
-                            "additionalProperties": False,
-                        },
-                    },
-                },
-                "required": ["artifactLocation", "replacements"],
-                "additionalProperties": False,
-            },
-        },
-    },
-    "required": ["artifactChanges"],
-    "additionalProperties": False,
-}
-SARIF = {
-    "type": "object",
-    "properties": {
-        "$schema": {"type": "string"},
-        "version": {"const": "2.1.0"},
-        "runs": {
-            "type": "array",
-            "minItems": 1,
-            "items": {
-                "type": "object",
-                "properties": {
-                    "tool": {
-                        "type": "object",
-                        "properties": {
-                            "driver": {
-                                "type": "object",
-                                "properties": {
-                                    "name": {"type": "string"},
-                                    "semanticVersion": {"type": "string", "pattern": r"^\d+\.\d+\.\d+"},
-                                    "informationUri": {"type": "string"},
-                                    "rules": {
-                                        "type": "array",
-                                        "items": {
-                                            "type": "object",
-                                            "properties": {
-                                                "id": {"type": "string"},
-                                                "shortDescription": _MESSAGE,
-                                                "fullDescription": _MESSAGE,
-                                                "help": _MESSAGE,
-                                                "helpUri": {"type": "string"},
-                                            },
-                                            "required": ["id", "shortDescription", "helpUri"],
-                                            "additionalProperties": False,
-                                        },
-                                    },
-                                },
-                                "required": ["name"],
-                                "additionalProperties": False,
-                            }
-                        },
-                        "required": ["driver"],
-                    },
-                    "columnKind": {"enum": ["utf16CodeUnits", "unicodeCodePoints"]},
-                    "results": {
-                        "type": "array",
-                        "items": {
-                            "type": "object",
-                            "properties": {
-                                "ruleId": {"type": "string"},
-                                "ruleIndex": {"type": "integer", "minimum": 0},
-                                "level": {"enum": ["none", "note", "warning", "error"]},
-                                "message": _MESSAGE,
-                                "locations": {"type": "array", "items": _LOCATION},
-                                "relatedLocations": {"type": "array", "items": _LOCATION},
-                                "fixes": {"type": "array", "minItems": 1, "items": _FIX},
-                            },
-                            "required": ["message", "ruleId", "level", "locations"],
-                            "additionalProperties": False,
-                        },
-                    },
-                },
-                "required": ["tool", "results"],
-                "additionalProperties": False,
-            },
-        },
-    },
-    "required": ["version", "runs"],
-    "additionalProperties": False,
-}
+_INDEX = {"type": "integer", "minimum": 0}
+_MESSAGE = {"type": "object", "properties": {"text": {"type": "string", "minLength": 1}}, "required": ["text"]}
+_FILE = closed("uri", uri={"type": "string", "pattern": "^[^\\\\ ]+$"})
+_REGION = closed(
+    "startLine",
+    **dict.fromkeys(("startLine", "startColumn", "endLine", "endColumn"), _POSITIVE),
+)
+_LOCATION = closed(
+    id=_INDEX,
+    message=_MESSAGE,
+    physicalLocation=closed("artifactLocation", artifactLocation=_FILE, region=_REGION),
+    logicalLocations=several({}),
+)
+_REPLACEMENT = closed("deletedRegion", deletedRegion=_REGION, insertedContent=_MESSAGE)
+_CHANGE = closed("artifactLocation", "replacements", artifactLocation=_FILE, replacements=several(_REPLACEMENT))
+_FIX = closed("artifactChanges", description=_MESSAGE, artifactChanges=several(_CHANGE))
+_RULE = closed(
+    *("id", "shortDescription", "helpUri"),
+    **dict.fromkeys(("id", "helpUri"), _TEXT),
+    **dict.fromkeys(("shortDescription", "fullDescription", "help"), _MESSAGE),
+)
+_DRIVER = closed(
+    "name",
+    name=_TEXT,
+    semanticVersion={"type": "string", "pattern": r"^\d+\.\d+\.\d+"},
+    informationUri=_TEXT,
+    rules={"type": "array", "items": _RULE},
+)
+_RESULT = closed(
+    *("message", "ruleId", "level", "locations"),
+    ruleId=_TEXT,
+    ruleIndex=_INDEX,
+    level={"enum": ["none", "note", "warning", "error"]},
+    message=_MESSAGE,
+    locations={"type": "array", "items": _LOCATION},
+    relatedLocations={"type": "array", "items": _LOCATION},
+    fixes=several(_FIX),
+)
+_RUN = closed(
+    *("tool", "results"),
+    tool={"type": "object", "properties": {"driver": _DRIVER}, "required": ["driver"]},
+    columnKind={"enum": ["utf16CodeUnits", "unicodeCodePoints"]},
+    results={"type": "array", "items": _RESULT},
+)
+SARIF = closed("version", "runs", **{"$schema": _TEXT}, version={"const": "2.1.0"}, runs=several(_RUN))
 """The requirements of SARIF 2.1.0 (3.13 to 3.30, 3.49, 3.55 to 3.57) on the parts of a log that EPG writes."""
 
 
