@@ -12,23 +12,9 @@ from dataclasses import field
 from fractions import Fraction
 
 from epg.generator.dataclass import dataclass
-from epg.generator.resolve.allocation import Assignment
+from epg.generator.resolve.allocation import AssignedPin, Assignment
 from epg.generator.resolve.application import Application
 from epg.generator.resolve.claims import TICK
-
-
-@dataclass(frozen=True)
-class PinView:
-    """A pin: its name in the data of the SoC or in the ``.tcf``, and its number in C.
-
-    A pin that is not ``named`` has its number as its name.  ``function`` is the number of its alternate function; None
-    for a plain pin, and for chips without such numbers.
-    """
-
-    name: str
-    number: int
-    function: int | None
-    named: bool
 
 
 @dataclass(frozen=True)
@@ -47,7 +33,7 @@ class ClaimView:
     slot: int
     instance_name: str
     slot_name: str
-    pins: Mapping[str, PinView]
+    pins: Mapping[str, AssignedPin]
     settings: Mapping[str, int]
     clock: Fraction | None
     frequency: Fraction | None
@@ -87,15 +73,6 @@ def board_nodes(app: Application) -> list[str]:
 def _view(
     app: Application, component: str, name: str, resource_class: str, label: str, assignment: Assignment
 ) -> ClaimView:
-    pins = {
-        signal: PinView(
-            str(assignment.pin_names.get(signal, pin)),
-            pin,
-            assignment.functions.get(signal),
-            signal in assignment.pin_names,
-        )
-        for signal, pin in assignment.pins.items()
-    }
     same = ("instance", "slot", "instance_name", "slot_name", "settings", "clock", "frequency", "attributes", "node")
     stated = {member: getattr(assignment, member) for member in same}
-    return ClaimView(component, name, resource_class, label, pins=pins, **stated)
+    return ClaimView(component, name, resource_class, label, pins=assignment.signals, **stated)

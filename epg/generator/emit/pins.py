@@ -6,10 +6,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from epg.generator.dataclass import dataclass
-from epg.generator.emit.claims import PinView, claims_of
+from epg.generator.emit.claims import claims_of
 from epg.generator.emit.macros import Macros
 from epg.generator.emit.text import Code
 from epg.generator.emit.views import OutputGroup, SafeState
+from epg.generator.resolve.allocation import AssignedPin
 
 
 @dataclass(frozen=True)
@@ -23,7 +24,7 @@ class DigitalPin:
 
     component: str
     role: str
-    pin: PinView
+    pin: AssignedPin
     node: str
     plain: bool
     drives: bool

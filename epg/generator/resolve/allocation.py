@@ -22,6 +22,7 @@ from epg.generator.catalog.hardware import Peripheral, ResourceClass, Target
 from epg.generator.check.other_code import NO_OTHER_CODE, OtherCode
 from epg.generator.dataclass import dataclass
 from epg.generator.diagnostics import Diagnostics, Note, did_you_mean
+from epg.generator.documents.schema import extended_from
 from epg.generator.resolve.claims import TICK, Claim, ClaimKey
 from epg.generator.resolve.conflict import Candidate, report_conflicts
 from epg.generator.resolve.divisions import Dividers, Divisions, asked_frequency, input_frequency
@@ -40,10 +41,24 @@ NODE_STEPS = 0xFFFF
 
 
 @dataclass(frozen=True)
+class AssignedPin:
+    """A pin: its name in the data of the SoC or in the ``.tcf``, and its number in C.
+
+    A pin that is not ``named`` has its number as its name.  ``function`` is the number of its alternate function; None
+    for a plain pin, and for chips without such numbers.
+    """
+
+    name: str
+    number: int
+    function: int | None = None
+    named: bool = True
+
+
+@dataclass(frozen=True)
 class Assignment:
     """The hardware of one claim.
 
-    ``pins`` maps signals to the numbers of pins in C.  ``instance`` and ``slot`` are numbers in C, too; ``slot`` is 0
+    ``signals`` has the pins of its signals.  ``instance`` and ``slot`` are numbers in C, too; ``slot`` is 0
     if the claim takes the whole instance.  ``settings`` holds ``prescaler`` and ``top`` if there is a divider.
     ``resource`` is the name in messages: "PWM slice 1, channel A".  ``instance_name`` and ``slot_name`` are the names
     in the chip's data.  ``clock`` is the frequency that the divider divides, ``frequency`` its actual frequency, and
@@ -51,7 +66,7 @@ class Assignment:
     base units.
     """
 
-    pins: Mapping[str, int]
+    signals: Mapping[str, AssignedPin]
     instance: int
     slot: int
     settings: Mapping[str, int]
@@ -64,12 +79,6 @@ class Assignment:
     instance_name: str = ""
     slot_name: str = ""
     attributes: Mapping[str, object] = field(default_factory=dict)
-    pin_names: Mapping[str, int | str] = field(default_factory=dict)
-    """Signal -> the chip's name of its pin: a number (GPIO 10) or a text (PD12).
-
-    Without real pins, only the names that users have given."""
-    functions: Mapping[str, int] = field(default_factory=dict)
-    """Signal -> the number of its pin's alternate function, for chips that have such numbers."""
     node: str = ""
     """The devicetree node that is used instead of pins and a peripheral."""
     start: str = ""
@@ -77,19 +86,16 @@ class Assignment:
     longest_gap: Fraction | None = None
     """The longest time in seconds between two readings of a counter; None if the greatest speed is not known."""
 
+    @property
+    def pins(self) -> dict[str, int]:
+        """Signal -> the number of its pin in C."""
+        return {signal: pin.number for signal, pin in self.signals.items()}
 
-@dataclass(frozen=True)
-class _Placed:
-    """A claim without mistakes, with the places that it can have.
-
-    ``divisions`` is empty if the claim sets no divider.
-    """
-
-    claim: Claim
-    resource_class: ResourceClass
-    pins: Mapping[str, int]
-    divisions: Divisions
-    places: frozenset[Place]
+    @property
+    def pin_names(self) -> dict[str, int | str]:
+        """Signal -> the name of its pin, a number (GPIO 10) or a text (PD12), for those that are named."""
+        named = {signal: pin.name for signal, pin in self.signals.items() if pin.named}
+        return {signal: int(name) if name.isdigit() else name for signal, name in named.items()}
 
 
 Assignments = Mapping[ClaimKey, Assignment]
@@ -109,21 +115,20 @@ def allocate(
     checked = _check([claim for claim in claims if not claim.node], pins, target, diagnostics)
     result = _nodes(named, target, diagnostics)
     for name, peripheral in target.soc.peripherals.items():
-        wanted = [placed for placed in checked if placed.resource_class.peripheral == name]
+        wanted = [candidate for candidate in checked if candidate.resource_class.peripheral == name]
         result |= _on_peripheral(wanted, peripheral, pins, diagnostics)
-    for placed in checked:
-        if placed.resource_class.peripheral is None:
-            result[placed.claim.key] = _pins_only(placed, target)
+    for candidate in checked:
+        if candidate.resource_class.peripheral is None:
+            result[candidate.claim.key] = _pins_only(candidate, target)
     if diagnostics.error_count > errors:
         return None
     return MappingProxyType({claim.key: result[claim.key] for claim in claims})
 
 
 def _on_peripheral(
-    wanted: Sequence[_Placed], peripheral: Peripheral, pins: Pins, diagnostics: Diagnostics
+    candidates: Sequence[Candidate], peripheral: Peripheral, pins: Pins, diagnostics: Diagnostics
 ) -> dict[ClaimKey, Assignment]:
     """The assignments of the claims that need ``peripheral``; none after reporting that they exclude each other."""
-    candidates = [_candidate(placed, peripheral) for placed in wanted]
     found = find_places([candidate.demand for candidate in candidates], _costs(peripheral))
     if found is None:
         report_conflicts(candidates, peripheral, pins, diagnostics)
@@ -131,10 +136,10 @@ def _on_peripheral(
     target = pins.target
     places = _better(candidates, found, peripheral, target)
     result = {}
-    for placed in wanted:
-        assignment = _assignment(placed, peripheral, places[placed.claim.key], target)
-        start = _start(placed, places, peripheral, target)
-        result[placed.claim.key] = replace(assignment, start=start) if start else assignment
+    for candidate in candidates:
+        assignment = _assignment(candidate, peripheral, places[candidate.claim.key], target)
+        start = _start(candidate, places, peripheral, target)
+        result[candidate.claim.key] = replace(assignment, start=start) if start else assignment
     return result
 
 
@@ -146,7 +151,8 @@ def as_written(claims: Sequence[Claim], target: Target) -> Assignments:
     result: dict[ClaimKey, Assignment] = {}
     for claim in claims:
         names = {signal: target.board.pin_name(str(stated.value)) for signal, stated in claim.signals.items()}
-        pins = {signal: target.soc.numbers[pin] for signal, pin in names.items() if pin in target.soc.numbers}
+        numbers = target.soc.numbers
+        pins = {signal: AssignedPin(pin, numbers[pin]) for signal, pin in names.items() if pin in numbers}
         if target.has_pins and pins:
             result[claim.key] = Assignment(MappingProxyType(pins), 0, 0, MappingProxyType({}), "")
     return MappingProxyType(result)
@@ -167,13 +173,13 @@ def _nodes(claims: Sequence[Claim], target: Target, diagnostics: Diagnostics) ->
         signals = list(resource_class.signals)
         divided = resource_class.divider_from is not None
         result[claim.key] = Assignment(
-            pins=MappingProxyType({signal: number - index for index, signal in enumerate(signals)}),
+            signals=_signals({signal: number - index for index, signal in enumerate(signals)}, {}),
             instance=NODES - place,
             slot=0,
             settings=MappingProxyType({"prescaler": 1, "top": NODE_STEPS - 1} if divided else {}),
             resource=f"devicetree node {claim.node}",
             pins_are_real=False,
-            attributes=_attributes(claim),
+            attributes=claim.attributes,
             node=claim.node,
         )
         number -= len(signals)
@@ -184,9 +190,9 @@ def _nodes(claims: Sequence[Claim], target: Target, diagnostics: Diagnostics) ->
     return result
 
 
-def _check(claims: Sequence[Claim], pins: Pins, target: Target, diagnostics: Diagnostics) -> list[_Placed]:
+def _check(claims: Sequence[Claim], pins: Pins, target: Target, diagnostics: Diagnostics) -> list[Candidate]:
     """The claims without mistakes.  Reports the mistakes of the others."""
-    result: list[_Placed] = []
+    result: list[Candidate] = []
     dividers = Dividers(target, diagnostics)
     for claim in claims:
         resource_class = _class(claim, target, diagnostics)
@@ -207,7 +213,8 @@ def _check(claims: Sequence[Claim], pins: Pins, target: Target, diagnostics: Dia
             continue
         numbers = pins.numbers(claim, resource_class, pin_numbers)
         if numbers is not None:
-            result.append(_Placed(claim, resource_class, numbers, divisions, places))
+            agreed = agreement(claim, resource_class, peripheral, divisions)
+            result.append(Candidate(claim, resource_class, numbers, divisions, Demand(places, agreed)))
     dividers.report_missing_clocks()
     return result
 
@@ -244,18 +251,13 @@ def _has_signals(claim: Claim, resource_class: ResourceClass, with_pins: bool, d
 
 def _check_support(claim: Claim, resource_class: ResourceClass, target: Target, diagnostics: Diagnostics) -> None:
     """Reports attributes with a value that this chip does not support."""
-    for attribute, stated in claim.attributes.items():
-        unsupported = resource_class.unsupported.get((attribute, str(stated.value)))
+    for attribute, value in claim.attributes.items():
+        unsupported = resource_class.unsupported.get((attribute, str(value)))
         if unsupported is not None:
-            what = f"{attribute} '{stated.value}' of {claim.user}"
+            what = f"{attribute} '{value}' of {claim.user}"
             message = f"{what} does not work on {target.soc.title}: {unsupported.because}"
-            hint, notes = unsupported.instead, stated.notes
-            diagnostics.error("unsupported-value", stated.span, message, hint=hint, notes=notes)
-
-
-def _candidate(placed: _Placed, peripheral: Peripheral) -> Candidate:
-    agreed = agreement(placed.claim, placed.resource_class, peripheral, placed.divisions)
-    return Candidate(placed.claim, placed.resource_class, Demand(placed.places, agreed))
+            hint, place = unsupported.instead, claim.place(attribute)
+            diagnostics.error("unsupported-value", place.span, message, hint=hint, notes=extended_from(place))
 
 
 def _better(
@@ -275,32 +277,29 @@ def _better(
     return places
 
 
-def _start(placed: _Placed, places: Mapping[ClaimKey, Place], peripheral: Peripheral, target: Target) -> str:
+def _start(candidate: Candidate, places: Mapping[ClaimKey, Place], peripheral: Peripheral, target: Target) -> str:
     """The start of an instance that starts together with the timer of the control loop; empty for others."""
     family = target.platform.family
-    if family is None or not target.tick_starts or placed.resource_class.name != target.tick_starts:
+    if family is None or not target.tick_starts or candidate.resource_class.name != target.tick_starts:
         return ""
     tick = places[TICK][0] if TICK in places else None
-    return start_of(places[placed.claim.key][0], tick, peripheral, family.start_otherwise)
+    return start_of(places[candidate.claim.key][0], tick, peripheral, family.start_otherwise)
 
 
 def agreement(
-    claim: Claim, resource_class: ResourceClass, peripheral: Peripheral, divisions: Divisions
+    claim: Claim, resource_class: ResourceClass, peripheral: Peripheral | None, divisions: Divisions
 ) -> tuple[Hashable, ...]:
     """The values of the attributes that must be equal for all users of an instance."""
-    return tuple(_agreed(claim, resource_class, divisions, attribute) for attribute in peripheral.agree)
+    names = () if peripheral is None else peripheral.agree
+    return tuple(_agreed(claim, resource_class, divisions, attribute) for attribute in names)
 
 
 def _agreed(claim: Claim, resource_class: ResourceClass, divisions: Divisions, attribute: str) -> Hashable:
     if attribute in ("frequency", "period") and divisions:
         return tuple(divisions.items())
-    if attribute in resource_class.fixed:
-        fixed = resource_class.fixed[attribute]
-        assert isinstance(fixed, Hashable)
-        return fixed
-    stated = claim.attributes.get(attribute)
-    assert stated is None or isinstance(stated.value, Hashable)
-    return None if stated is None else stated.value
+    value = resource_class.fixed.get(attribute, claim.attributes.get(attribute))
+    assert isinstance(value, Hashable)
+    return value
 
 
 def _costs(peripheral: Peripheral) -> list[int]:
@@ -314,20 +313,21 @@ def _costs(peripheral: Peripheral) -> list[int]:
     return counts
 
 
-def _assignment(placed: _Placed, peripheral: Peripheral, place: Place, target: Target) -> Assignment:
+def _assignment(candidate: Candidate, peripheral: Peripheral, place: Place, target: Target) -> Assignment:
     instance, slot = place
     settings: dict[str, int] = {}
     clock = frequency = asked = None
-    if placed.divisions:
+    if candidate.divisions:
         source = peripheral.sources[instance]
-        clock, division = input_frequency(target, source), placed.divisions[source]
+        clock, division = input_frequency(target, source), candidate.divisions[source]
         assert clock is not None
         settings = {"prescaler": division.prescaler, "top": division.counter - 1}
         frequency = clock / division.clocks
-        asked = asked_frequency(placed.claim, placed.resource_class)
+        asked = asked_frequency(candidate.claim, candidate.resource_class)
+    functions = _functions(candidate, peripheral, place, target)
     whole = slot == WHOLE
     return Assignment(
-        pins=placed.pins,
+        signals=_signals(candidate.pins, _names(candidate, target), functions),
         instance=instance,
         slot=0 if whole else slot,
         settings=MappingProxyType(settings),
@@ -336,49 +336,52 @@ def _assignment(placed: _Placed, peripheral: Peripheral, place: Place, target: T
         frequency=frequency,
         asked=asked,
         pins_are_real=target.has_pins,
-        pin_names=_pin_names(placed, target),
         instance_name=peripheral.instances[instance],
         slot_name="" if whole else peripheral.slots[slot],
-        attributes=_attributes(placed.claim),
-        functions=_functions(placed, peripheral, place, target),
+        attributes=candidate.claim.attributes,
     )
 
 
-def _functions(placed: _Placed, peripheral: Peripheral, place: Place, target: Target) -> Mapping[str, int]:
+def _functions(candidate: Candidate, peripheral: Peripheral, place: Place, target: Target) -> dict[str, int]:
     """The alternate functions of the pins of a claim in its ``place``."""
     found: dict[str, int] = {}
-    for signal, number in placed.pins.items() if target.has_pins else ():
-        how = placed.resource_class.signals[signal]
+    for signal, number in candidate.pins.items() if target.has_pins else ():
+        how = candidate.resource_class.signals[signal]
         slot = peripheral.slots.index(how) if how in peripheral.slots else place[1]
         functions = peripheral.functions.get((place[0], slot), {})
         if how != "any" and target.soc.pins[number] in functions:
             found[signal] = functions[target.soc.pins[number]]
-    return MappingProxyType(found)
+    return found
 
 
-def _attributes(claim: Claim) -> Mapping[str, object]:
-    return MappingProxyType({name: stated.value for name, stated in claim.attributes.items()})
-
-
-def _pin_names(placed: _Placed, target: Target) -> Mapping[str, int | str]:
+def _names(candidate: Candidate, target: Target) -> dict[str, str]:
+    """The chip's names of the pins of a claim.  Without real pins, only the names that users have given."""
     if target.has_pins:
-        names = {signal: target.soc.pins[number] for signal, number in placed.pins.items()}
-    else:
-        names = {signal: str(stated.value) for signal, stated in placed.claim.signals.items()}
-    return MappingProxyType({signal: int(name) if name.isdigit() else name for signal, name in names.items()})
+        return {signal: target.soc.pins[number] for signal, number in candidate.pins.items()}
+    return {signal: str(written.value) for signal, written in candidate.claim.signals.items()}
 
 
-def _pins_only(placed: _Placed, target: Target) -> Assignment:
-    numbers = list(placed.pins.values())
+def _signals(
+    numbers: Mapping[str, int], names: Mapping[str, str], functions: Mapping[str, int] = MappingProxyType({})
+) -> Mapping[str, AssignedPin]:
+    return MappingProxyType(
+        {
+            signal: AssignedPin(names.get(signal, str(number)), number, functions.get(signal), signal in names)
+            for signal, number in numbers.items()
+        }
+    )
+
+
+def _pins_only(candidate: Candidate, target: Target) -> Assignment:
+    numbers = list(candidate.pins.values())
     names = ", ".join(target.soc.pins[number] if target.has_pins else str(number) for number in numbers)
     kind = "pin" if target.has_pins else "digital pin" if target.soc.free_names else "simulated pin"
     return Assignment(
-        pins=placed.pins,
+        signals=_signals(candidate.pins, _names(candidate, target)),
         instance=0,
         slot=numbers[0],
         settings=MappingProxyType({}),
         resource=f"{kind} {names}",
         pins_are_real=target.has_pins,
-        pin_names=_pin_names(placed, target),
-        attributes=_attributes(placed.claim),
+        attributes=candidate.claim.attributes,
     )

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import field
+from dataclasses import field, replace
 from fractions import Fraction
 from types import MappingProxyType
 
@@ -12,8 +12,7 @@ from epg.generator.catalog.hardware import Target
 from epg.generator.catalog.kind import KindClaim
 from epg.generator.check.configuration import Component, Configuration
 from epg.generator.dataclass import dataclass
-from epg.generator.diagnostics import Note
-from epg.generator.source import Span
+from epg.generator.source import Span, YamlNode
 
 ClaimKey = tuple[str, str]
 """The name of the component, and the name of the claim in its kind."""
@@ -23,32 +22,21 @@ TICK: ClaimKey = ("", "tick")
 
 
 @dataclass(frozen=True)
-class Stated:
-    """A value with its position, and the positions of each ``extends`` that leads to its file."""
-
-    value: object
-    span: Span
-    origins: tuple[Span, ...] = ()
-
-    @property
-    def notes(self) -> list[Note]:
-        return [Note("extended here", span) for span in self.origins]
-
-
-@dataclass(frozen=True)
 class Claim:
     """One use of a resource class: of a peripheral with its pins, or of pins only.
 
     ``signals`` maps the signals of the class to pins as they are written.  If EPG numbers the signals, it has only the
     names that users have given to them.
-    ``attributes`` are in base units (Hz, s).  ``component`` is empty for the control loop.
+    ``attributes`` are in base units (Hz, s), and ``written`` has the place of each.  ``component`` is empty for the
+    control loop.
     """
 
     component: str
     name: str
     resource_class: str
-    signals: Mapping[str, Stated]
-    attributes: Mapping[str, Stated]
+    signals: Mapping[str, YamlNode]
+    attributes: Mapping[str, object]
+    written: Mapping[str, YamlNode]
     span: Span
     stated_in: Span = field(default_factory=lambda: Span(""))
     """The position of the claim in the file of its kind or platform, for mistakes in that file."""
@@ -58,6 +46,10 @@ class Claim:
     @property
     def key(self) -> ClaimKey:
         return self.component, self.name
+
+    def place(self, attribute: str) -> YamlNode:
+        """The place of an attribute, for messages: that of the component if it has no value."""
+        return self.written.get(attribute) or YamlNode(None, self.span)
 
     @property
     def user(self) -> str:
@@ -79,45 +71,39 @@ def tick_claims(target: Target, period: Fraction | None, span: Span) -> tuple[Cl
     """
     if target.tick is None:
         return ()
-    attributes = {} if period is None else {"period": Stated(period, span)}
+    attributes = {} if period is None else {"period": period}
     where = target.platform.node["tick"].span
-    return (Claim(*TICK, target.tick, MappingProxyType({}), MappingProxyType(attributes), span, where),)
+    return (Claim(*TICK, target.tick, MappingProxyType({}), MappingProxyType(attributes), {}, span, where),)
 
 
 def _claims(components: Iterable[Component], with_pins: bool, with_nodes: bool) -> Iterable[Claim]:
     for component in components:
         for claim in component.kind.claims:
             node = component.node.get("node") if with_nodes else None
-            written = with_pins and node is None
-            pins = _pins(component) if written else {}
-            signals = {signal: pins[pin] for signal, pin in claim.signals.items() if pin in pins}
+            pins = component.node.get("pins") if with_pins and node is None else None
+            signals = {signal: pins[pin] for signal, pin in claim.signals.items() if pin in pins} if pins else {}
+            attributes = _attributes(component, claim)
             yield Claim(
                 component=component.name,
                 name=claim.name,
                 resource_class=claim.resource_class,
                 signals=MappingProxyType(signals),
-                attributes=MappingProxyType(_attributes(component, claim)),
+                attributes=MappingProxyType({name: value for name, (value, _) in attributes.items()}),
+                written=MappingProxyType({name: where for name, (_, where) in attributes.items()}),
                 span=component.span,
                 stated_in=claim.span,
                 node=str(node.value) if node is not None else "",
             )
 
 
-def _pins(component: Component) -> dict[str, Stated]:
-    """The pins of a component that the ``.tcf`` states; all of its kind's, unless their names are free."""
-    pins = component.node.get("pins")
-    return {name: Stated(node.value, node.span, node.origins) for name, node in pins.items()} if pins else {}
-
-
-def _attributes(component: Component, claim: KindClaim) -> dict[str, Stated]:
-    """The attributes that have a value.  The position of a default is that of the component's name."""
-    result: dict[str, Stated] = {}
+def _attributes(component: Component, claim: KindClaim) -> dict[str, tuple[object, YamlNode]]:
+    """The attributes that have a value, each with its place.  That of a default is the component's name."""
+    result: dict[str, tuple[object, YamlNode]] = {}
     for attribute, parameter in claim.attributes.items():
         name, _, part = parameter.partition(".")
-        value, node = component.parameters.get(name), component.node.get(name)
+        value = component.parameters.get(name)
         if part:
             value = value.get(part) if isinstance(value, Mapping) else None
         if value is not None:
-            origins = node.origins if node else component.node.origins
-            result[attribute] = Stated(value, node.span if node else component.span, origins)
+            result[attribute] = value, component.node.get(name) or replace(component.node, span=component.span)
     return result

@@ -8,26 +8,32 @@ no names.  Therefore this module asks the search again, with fewer claims.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from epg.generator.catalog.hardware import Peripheral, ResourceClass, Target
 from epg.generator.dataclass import dataclass
 from epg.generator.diagnostics import Diagnostics, Note
 from epg.generator.documents.items import pin_list
+from epg.generator.documents.schema import extended_from
 from epg.generator.quantity import show
 from epg.generator.resolve.claims import Claim
+from epg.generator.resolve.divisions import Divisions
 from epg.generator.resolve.pins import Pins
 from epg.generator.resolve.search import Demand, find_places
-from epg.generator.source import Span
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """A claim without mistakes that needs a place."""
+    """A claim without mistakes: the numbers of its pins in C, and its demand of a place on its peripheral.
+
+    ``divisions`` is empty if the claim sets no divider.
+    """
 
     claim: Claim
     resource_class: ResourceClass
+    pins: Mapping[str, int]
+    divisions: Divisions
     demand: Demand
 
 
@@ -118,16 +124,17 @@ def _two(first: Candidate, second: Candidate, peripheral: Peripheral, hint: str,
     if differing is None:
         stated = next(iter(second.claim.signals.values()))
         message = f"{where} is already used by {first.claim.user}"
-        notes = [Note("used here", next(iter(first.claim.signals.values())).span), *stated.notes]
+        notes = [Note("used here", next(iter(first.claim.signals.values())).span), *extended_from(stated)]
         diagnostics.error(f"{peripheral.name}-used-twice", stated.span, message, hint=hint, notes=notes)
         return
     attribute, one, other = differing
     users = f"{first.claim.user} and {second.claim.user}"
     message = f"{users} share {where}, which has only one {attribute}, not {one} and {other}"
-    notes = [Note(f"{one} is set here", _attribute_span(first, attribute)), *_extending(second, attribute)]
+    place = second.claim.place(attribute)
+    notes = [Note(f"{one} is set here", first.claim.place(attribute).span), *extended_from(place)]
     id = f"{peripheral.name}-{attribute}-conflict"
     hint = f"write the same {attribute} for both" + (f", or {hint}" if hint else "")
-    diagnostics.error(id, _attribute_span(second, attribute), message, hint=hint, notes=notes)
+    diagnostics.error(id, place.span, message, hint=hint, notes=notes)
 
 
 def _too_many(
@@ -209,18 +216,7 @@ def _shown(candidate: Candidate, attribute: str) -> str:
     divider = candidate.resource_class.divider_from
     if attribute in ("frequency", "period") and divider is not None:
         attribute = divider
-    stated = candidate.claim.attributes.get(attribute)
-    value = stated.value if stated is not None else candidate.resource_class.fixed.get(attribute, "none")
+    value = candidate.claim.attributes.get(attribute, candidate.resource_class.fixed.get(attribute, "none"))
     if attribute in ("frequency", "period") and isinstance(value, (int, float, Fraction)):
         return show(value, "frequency" if attribute == "frequency" else "time")
     return str(value)
-
-
-def _attribute_span(candidate: Candidate, attribute: str) -> Span:
-    stated = candidate.claim.attributes.get(attribute)
-    return stated.span if stated is not None else candidate.claim.span
-
-
-def _extending(candidate: Candidate, attribute: str) -> list[Note]:
-    stated = candidate.claim.attributes.get(attribute)
-    return stated.notes if stated is not None else []

@@ -13,6 +13,7 @@ from fractions import Fraction
 
 from epg.generator.catalog.hardware import COUNT_BITS, Target
 from epg.generator.diagnostics import Diagnostics, Note
+from epg.generator.documents.schema import extended_from
 from epg.generator.quantity import show
 from epg.generator.resolve.allocation import Assignment
 from epg.generator.resolve.claims import Claim, ClaimKey
@@ -54,7 +55,7 @@ def counter_bits(found: Assignment, claim: Claim, target: Target) -> int:
     if peripheral is not None and not found.node and not target.platform.extends_counters:
         bits = peripheral.bits[found.instance]
     stated = claim.attributes.get("counter_bits")
-    return min(bits, stated.value if stated is not None and isinstance(stated.value, int) else bits, COUNT_BITS)
+    return min(bits, stated if isinstance(stated, int) else bits, COUNT_BITS)
 
 
 def longest_gap(found: Assignment, claim: Claim, target: Target) -> Fraction | None:
@@ -80,7 +81,7 @@ def check_counters(
         rate = counts_per_second(assignment.attributes)
         assert rate is not None
         bits = counter_bits(assignment, claim, target)
-        stated = claim.attributes[SPEED]
+        place = claim.place(SPEED)
         moved = math.ceil(rate * period)
         many = f"{moved}" if moved <= _MANY else f"more than {_MANY}"
         message = f"at this speed, {claim.user} moves {many} counts in a control period, but "
@@ -90,8 +91,8 @@ def check_counters(
             hint = f"correct '{SPEED}', or the counts of the encoder"
         wider = _wider(claim, bits, target)
         hint += f", or pins of {' or '.join(wider)}, which have more bits" if wider else ""
-        notes = [*stated.notes, Note(f"the control period is {show(period, 'time')}", period_span)]
-        diagnostics.error("encoder-too-fast", stated.span, message, hint=hint, notes=notes)
+        notes = [*extended_from(place), Note(f"the control period is {show(period, 'time')}", period_span)]
+        diagnostics.error("encoder-too-fast", place.span, message, hint=hint, notes=notes)
 
 
 def _wider(claim: Claim, bits: int, target: Target) -> list[str]:

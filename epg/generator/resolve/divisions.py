@@ -13,6 +13,7 @@ from types import MappingProxyType
 
 from epg.generator.catalog.hardware import Divider, DividerInput, Peripheral, ResourceClass, Target
 from epg.generator.diagnostics import Diagnostics, Note
+from epg.generator.documents.schema import extended_from
 from epg.generator.quantity import show
 from epg.generator.resolve.claims import Claim
 from epg.generator.resolve.divider import Division, clock_range, divide, neighbours
@@ -101,13 +102,13 @@ class Dividers:
         """Reports a value that is out of range, or that no setting reaches, with the limits of the input ``source``."""
         attribute, clock = resource_class.divider_from, input_frequency(self.target, source)
         assert attribute is not None and clock is not None
-        stated, target = claim.attributes[attribute], self.target
+        stated, target = claim.place(attribute), self.target
         value = _value(claim, attribute)
         dimension = "frequency" if attribute == "frequency" else "time"
         first, last = clock_range(divider)
         clocks = _clocks(claim, attribute, clock)
         speed = show(clock, "frequency")
-        notes = [*stated.notes, *target.clocks[source.clock].notes]
+        notes = [*extended_from(stated), *target.clocks[source.clock].notes]
         if not first <= clocks <= last:
             what = f"{attribute} {show(value, dimension)} of {claim.user}"
             low, high = sorted(_written(n, attribute, clock) for n in (first, last))
@@ -150,7 +151,7 @@ def asked_frequency(claim: Claim, resource_class: ResourceClass) -> Fraction:
 
 def _value(claim: Claim, attribute: str) -> Fraction:
     """The frequency in Hz, or the period in s, that the claim wants."""
-    value = claim.attributes[attribute].value
+    value = claim.attributes[attribute]
     assert isinstance(value, (int, float, Fraction))
     return Fraction(value)
 

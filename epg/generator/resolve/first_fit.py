@@ -24,11 +24,12 @@ from epg.generator.check.configuration import Configuration
 from epg.generator.dataclass import dataclass
 from epg.generator.diagnostics import Diagnostics
 from epg.generator.resolve.allocation import agreement
-from epg.generator.resolve.claims import Claim, Stated, component_claims, tick_claims
+from epg.generator.resolve.claims import Claim, component_claims, tick_claims
 from epg.generator.resolve.divisions import Dividers
 from epg.generator.resolve.pins import Pins, all_places
 from epg.generator.resolve.resolve import allocate_claims
 from epg.generator.resolve.search import Demand, Place, find_places
+from epg.generator.source import YamlNode
 
 __all__ = ["ClaimSignal", "complete_claims", "first_fit", "is_complete", "signals_of", "usable_pin", "with_pins"]
 
@@ -68,7 +69,7 @@ def with_pins(configuration: Configuration, pins: Mapping[ClaimSignal, str]) -> 
         for signal, name in kind.signals.items() if kind is not None else ():
             pin = pins.get((claim.component, name))
             if pin:
-                signals[signal] = replace(signals.get(signal, Stated(pin, claim.span)), value=pin)
+                signals[signal] = replace(signals.get(signal, YamlNode(pin, claim.span)), value=pin)
             elif pin is not None:
                 signals.pop(signal, None)
         result.append(replace(claim, signals=MappingProxyType(signals)))

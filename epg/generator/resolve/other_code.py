@@ -33,7 +33,7 @@ def places_left(
         span = signals[0].span if signals else claim.span
         free = "choose other pins, or " if signals else ""
         hint = f"{free}free one in STM32CubeMX and generate its code again"
-        notes = [others.instances[name].note for name in names] + (signals[0].notes if signals else [])
+        notes = [others.instances[name].note for name in names] + (extended_from(signals[0]) if signals else [])
         diagnostics.error("other-code-peripheral", span, message, hint=hint, notes=notes)
     return left
 

@@ -9,20 +9,12 @@ from types import MappingProxyType
 
 from epg.generator.catalog.hardware import Peripheral, ResourceClass, Target
 from epg.generator.check.other_code import NO_OTHER_CODE, OtherCode
-from epg.generator.dataclass import dataclass
 from epg.generator.diagnostics import Diagnostics, Note
 from epg.generator.documents.items import pin_list
-from epg.generator.resolve.claims import Claim, Stated
+from epg.generator.documents.schema import extended_from
+from epg.generator.resolve.claims import Claim
 from epg.generator.resolve.search import WHOLE, Place
-from epg.generator.source import Span
-
-
-@dataclass(frozen=True)
-class PinUser:
-    """The user of a pin, and the position at which it names the pin."""
-
-    name: str
-    span: Span
+from epg.generator.source import YamlNode
 
 
 class Pins:
@@ -36,7 +28,7 @@ class Pins:
         self.others = others
         self.diagnostics = diagnostics
         self.usable_pins = {*target.board.pins, *target.board.onboard}
-        self.taken: dict[str, PinUser] = {}
+        self.taken: dict[str, tuple[Claim, YamlNode]] = {}  # pin -> its user, and where it names the pin
         self.wanted = {target.board.pin_name(str(s.value)) for claim in claims for s in claim.signals.values()}
         self.numbered = 0  # number of signals that EPG has numbered
         self._places: dict[tuple[str, str], Mapping[str, frozenset[Place]]] = {}  # (class, signal) -> pin -> places
@@ -125,7 +117,7 @@ class Pins:
         free -= set(self.taken) | self.wanted | set(self.others.pins)
         return [pin for pin in self.target.soc.pins if pin in free and self._is_useful(resource_class, signal, pin)]
 
-    def _exists(self, pin: str, stated: Stated) -> bool:
+    def _exists(self, pin: str, stated: YamlNode) -> bool:
         """True if components can use the pin.  Reports a pin that the board does not have, or reserves for itself."""
         board, soc = self.target.board, self.target.soc
         id, message = "pin-reserved", f"pin {pin} of {board.name} is reserved: {board.reserved.get(pin)}"
@@ -135,10 +127,10 @@ class Pins:
             what = "is not broken out" if pin in soc.numbers else "does not exist"
             id, message = "pin-unknown", f"pin {stated.value} {what} on {board.name}"
         hint = f"pins of {board.name}: {pin_list(board.pins)}"
-        self.diagnostics.error(id, stated.span, message, hint=hint, notes=stated.notes)
+        self.diagnostics.error(id, stated.span, message, hint=hint, notes=extended_from(stated))
         return False
 
-    def _is_free(self, pin: str, stated: Stated, claim: Claim, signal: str, resource_class: ResourceClass) -> bool:
+    def _is_free(self, pin: str, stated: YamlNode, claim: Claim, signal: str, resource_class: ResourceClass) -> bool:
         """True after taking the pin for ``claim``.
 
         Reports a pin that another claim has taken, that other code uses, or that is wired to a device on the board of
@@ -148,22 +140,22 @@ class Pins:
         if onboard and resource_class.name not in onboard.classes:
             message = f"pin {pin} is wired to {onboard.title} and cannot be used for {resource_class.a_title}"
             hint = self._free_hint(resource_class, signal)
-            self.diagnostics.error("pin-cannot-reach", stated.span, message, hint=hint, notes=stated.notes)
+            self.diagnostics.error("pin-cannot-reach", stated.span, message, hint=hint, notes=extended_from(stated))
             return False
         elsewhere = self.others.pins.get(pin)
         if elsewhere is not None:
             message = f"pin {pin} is used by other code of the program"
             hint = self._free_hint(resource_class, signal)
-            notes = [elsewhere.note, *stated.notes]
+            notes = [elsewhere.note, *extended_from(stated)]
             self.diagnostics.error("other-code-pin", stated.span, message, hint=hint, notes=notes)
             return False
-        other = self.taken.get(pin)
-        if other is None:
-            self.taken[pin] = PinUser(claim.user, stated.span)
+        if pin not in self.taken:
+            self.taken[pin] = claim, stated
             return True
-        whose = "by this component" if other.name == claim.user else f"by {other.name}"
+        other, first = self.taken[pin]
+        whose = "by this component" if other.user == claim.user else f"by {other.user}"
         message = f"pin {pin} is already used {whose}"
-        notes = [Note("used here", other.span), *stated.notes]
+        notes = [Note("used here", first.span), *extended_from(stated)]
         self.diagnostics.error(
             "pin-used-twice", stated.span, message, hint=self._free_hint(resource_class, signal), notes=notes
         )
@@ -215,7 +207,7 @@ class Pins:
         pairs.sort(key=lambda pair: pins[0] not in pair)  # Pairs with the first pin come first.
         shown = ", ".join(f"{one} and {other}" for one, other in pairs[:8])
         hint = f"free pairs: {shown}" if pairs else "no pair of adjacent pins is free"
-        notes = [Note(f"pin {resource_class.neighbours[0]} is set here", first.span), *second.notes]
+        notes = [Note(f"pin {resource_class.neighbours[0]} is set here", first.span), *extended_from(second)]
         self.diagnostics.error("pins-not-neighbouring", second.span, message, hint=hint, notes=notes)
 
     def _report_unreachable(
@@ -229,7 +221,7 @@ class Pins:
                 f"pin {pins[signal]} cannot be '{signal}' of {resource_class.a_title}: no {peripheral.title} reaches it"
             )
             hint = self._free_hint(resource_class, signal)
-            self.diagnostics.error("pin-cannot-reach", stated.span, message, hint=hint, notes=stated.notes)
+            self.diagnostics.error("pin-cannot-reach", stated.span, message, hint=hint, notes=extended_from(stated))
         if alone:
             return
         *others, last = claim.signals.values()
@@ -240,7 +232,7 @@ class Pins:
             if all(self._reached(resource_class, peripheral, signal, place) for signal in pins)
         ]
         hint = f"for example: {', '.join(dict.fromkeys(sets))}" if sets else ""
-        notes = [*(Note("together with this pin", stated.span) for stated in others), *last.notes]
+        notes = [*(Note("together with this pin", stated.span) for stated in others), *extended_from(last)]
         self.diagnostics.error("pin-cannot-reach", last.span, message, hint=hint, notes=notes)
 
 
