@@ -14,7 +14,7 @@ from epg.generator.diagnostics import Diagnostics
 
 if TYPE_CHECKING:
     from epg.generator.catalog.catalog import Catalog
-    from epg.generator.catalog.hardware import Target
+    from epg.generator.catalog.hardware import Computer
     from epg.generator.catalog.kind import Kind
 
 
@@ -47,7 +47,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     return 0
 
 
-def _target(target: Target, catalog: Catalog) -> dict[str, Any]:
+def _target(target: Computer, catalog: Catalog) -> dict[str, Any]:
     from epg.generator.check.middleware import offered
 
     frequencies = {clock.name: clock.frequency for clock in target.clocks.values()}
@@ -61,7 +61,7 @@ def _target(target: Target, catalog: Catalog) -> dict[str, Any]:
     }
 
 
-def _builds(target: Target) -> str:
+def _builds(target: Computer) -> str:
     return "yes" if target.platform.builds else "check only"
 
 

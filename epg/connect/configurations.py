@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from epg.generator.bootstrap import cache_folder
-from epg.generator.catalog.catalog import Catalog, Target, load_catalog
+from epg.generator.catalog.catalog import Catalog, Computer, load_catalog
 from epg.generator.check.communication import tools_for
 from epg.generator.check.configuration import Configuration
 from epg.generator.check.middleware import first_middleware
@@ -41,7 +41,7 @@ class PredefinedTarget:
 
     name: str
     robot: str
-    target: Target
+    target: Computer
     configuration: Configuration | None
     problem: str
 
@@ -183,7 +183,7 @@ class Project:
 
     chosen: str
     fixed: str
-    target: Target | None
+    target: Computer | None
     own_target: bool = False
 
     def reason(self, choice: PredefinedTarget) -> str:
@@ -201,7 +201,7 @@ class Project:
         return ""
 
 
-def _not_built(target: Target) -> str:
+def _not_built(target: Computer) -> str:
     return f"EPG can check files for {target.platform.name}, but cannot generate code for it"
 
 

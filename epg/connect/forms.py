@@ -21,7 +21,7 @@ from epg.connect.form_fields import FieldPath, FieldSet, FormField, Forms, FormV
 from epg.connect.loaded import Loaded, value_at
 from epg.edit.parameters import PARAMETERS, parameter_path
 from epg.edit.scalars import scalar_text
-from epg.generator.catalog.catalog import Catalog, Kind, Target
+from epg.generator.catalog.catalog import Catalog, Computer, Kind
 from epg.generator.catalog.middleware import Middleware
 from epg.generator.check.compose import communication_schema, component_schema, console_schema
 from epg.generator.check.configuration import Component
@@ -69,7 +69,7 @@ def _component_names(root: YamlNode) -> list[str]:
 # fields
 
 
-def _kind_form(kind: Kind, target: Target | None, components: Mapping[str, Component]) -> KindForm:
+def _kind_form(kind: Kind, target: Computer | None, components: Mapping[str, Component]) -> KindForm:
     schema = component_schema(kind, with_pins=target is not None and target.has_pins)
     properties = _values_of_kind(schema["properties"], kind, target, components)
     first = ("pins", *(use.name for use in kind.uses))
@@ -81,7 +81,7 @@ def _kind_form(kind: Kind, target: Target | None, components: Mapping[str, Compo
     return KindForm(kind.group, kind.summary, shown, tuple(one_of), _unusable(kind, target))
 
 
-def _field_of_kind(field: FormField, target: Target | None) -> FormField:
+def _field_of_kind(field: FormField, target: Computer | None) -> FormField:
     if field.path == ("pins",):
         pins = (replace(pin, type="pin", example=_pin_example(target)) for pin in field.fields)
         return replace(field, example="", fields=tuple(pins))
@@ -89,7 +89,7 @@ def _field_of_kind(field: FormField, target: Target | None) -> FormField:
 
 
 def _values_of_kind(
-    schemas: Mapping[str, Any], kind: Kind, target: Target | None, components: Mapping[str, Component]
+    schemas: Mapping[str, Any], kind: Kind, target: Computer | None, components: Mapping[str, Component]
 ) -> dict[str, Any]:
     """The schemas of the values that a component of ``kind`` can have on this target, and the components to name."""
     values = {key: child for key, child in schemas.items() if key != "kind"}
@@ -103,11 +103,11 @@ def _values_of_kind(
     return values
 
 
-def _pin_example(target: Target | None) -> str:
+def _pin_example(target: Computer | None) -> str:
     return target.board.pin_title(target.board.pins[0]) if target is not None and target.board.pins else "10"
 
 
-def _unusable(kind: Kind, target: Target | None) -> str:
+def _unusable(kind: Kind, target: Computer | None) -> str:
     if target is None:
         return ""
     lacking = dict.fromkeys(
@@ -162,7 +162,7 @@ def _type_of(schema: Mapping[str, Any]) -> str:
 
 
 def _settings(
-    root: YamlNode, target: Target | None, components: Mapping[str, Component], catalog: Catalog
+    root: YamlNode, target: Computer | None, components: Mapping[str, Component], catalog: Catalog
 ) -> list[SettingsSection]:
     """The sections of a ``.tcf`` beside its components, with the keys that have an effect on this target."""
     whole = load_schema("tcf")["properties"]
@@ -211,7 +211,7 @@ def _control(schema: Mapping[str, Any], components: Mapping[str, Component]) -> 
 
 
 def _communication(
-    root: YamlNode, target: Target | None, components: Mapping[str, Component], catalog: Catalog
+    root: YamlNode, target: Computer | None, components: Mapping[str, Component], catalog: Catalog
 ) -> dict[FieldPath, Any]:
     if target is None:
         return _below("communication", load_schema("tcf")["properties"]["communication"]["properties"])
@@ -239,7 +239,7 @@ def _communication(
     return _below("communication", schemas)
 
 
-def _without_effect(middleware: Middleware, target: Target, offers: Mapping[str, object]) -> Iterator[str]:
+def _without_effect(middleware: Middleware, target: Computer, offers: Mapping[str, object]) -> Iterator[str]:
     """The keys of ``communication`` that have no effect with ``middleware`` on ``target``."""
     if not middleware.is_node:
         yield from ("domain", "diagnostics", "keep_cycles")
@@ -251,7 +251,7 @@ def _without_effect(middleware: Middleware, target: Target, offers: Mapping[str,
         yield "usb"
 
 
-def _clocks(target: Target) -> dict[FieldPath, Any]:
+def _clocks(target: Computer) -> dict[FieldPath, Any]:
     schema = load_schema("tcf")["properties"]["clocks"]["additionalProperties"]
     clocks: dict[FieldPath, Any] = {}
     for name, clock in target.clocks.items():

@@ -13,7 +13,7 @@ from pathlib import Path
 from epg.connect.files import Watch
 from epg.connect.places import Places
 from epg.edit.ends import WireEnd, ends_of, references_of
-from epg.generator.catalog.catalog import Catalog, Kind, Target, load_catalog
+from epg.generator.catalog.catalog import Catalog, Computer, Kind, load_catalog
 from epg.generator.catalog.parameter import typed_value
 from epg.generator.check.bindings import Conversion
 from epg.generator.check.configuration import Component, Configuration, check_components
@@ -66,7 +66,7 @@ class Loaded:
         return apply_settings(merge_chain(self.chain), settings_node(self.request.settings, Diagnostics()))
 
     @cached_property
-    def target(self) -> Target | None:
+    def target(self) -> Computer | None:
         """Board and platform, even if other values of the ``.tcf`` have errors."""
         if self.parts.configuration is not None:
             return self.parts.configuration.target

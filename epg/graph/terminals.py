@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from epg.generator.catalog.board_layout import Contact, Layout
-from epg.generator.catalog.hardware import Target
+from epg.generator.catalog.hardware import Computer
 from epg.generator.catalog.kind import Kind
 from epg.generator.check.configuration import Component
 from epg.generator.dataclass import dataclass
@@ -34,7 +34,7 @@ class Terminal:
 
 
 def terminals(
-    target: Target, components: Mapping[str, Component], assignments: Mapping[ClaimKey, Assignment]
+    target: Computer, components: Mapping[str, Component], assignments: Mapping[ClaimKey, Assignment]
 ) -> dict[str, list[Terminal]]:
     """The terminals on each side of the board, from the top down or from the left to the right."""
     layout = target.board.layout
@@ -59,7 +59,7 @@ def _claims(component: str, assignments: Mapping[ClaimKey, Assignment]) -> dict[
     return {claim: found for (name, claim), found in assignments.items() if name == component}
 
 
-def _signals(target: Target, kind: Kind, claims: Mapping[str, Assignment]) -> Iterator[tuple[str, str, Assignment]]:
+def _signals(target: Computer, kind: Kind, claims: Mapping[str, Assignment]) -> Iterator[tuple[str, str, Assignment]]:
     """The signals of a component with these ``claims``, each with the pin of the SoC that carries it."""
     for claim in kind.claims:
         assignment = claims.get(claim.name)
@@ -71,7 +71,7 @@ def _signals(target: Target, kind: Kind, claims: Mapping[str, Assignment]) -> It
 
 
 def elsewhere(
-    target: Target, components: Mapping[str, Component], assignments: Mapping[ClaimKey, Assignment]
+    target: Computer, components: Mapping[str, Component], assignments: Mapping[ClaimKey, Assignment]
 ) -> list[str]:
     """Texts about signals without a contact: they have no pin yet, or it is used on the board, or it is not shown."""
     layout = target.board.layout
@@ -90,12 +90,12 @@ def elsewhere(
     return result
 
 
-def printed_names(target: Target, pin: str) -> str:
+def printed_names(target: Computer, pin: str) -> str:
     """The names of a SoC's pin that are printed on the board, and that differ from its title: ``D6``."""
     return " ".join(name for name, named in target.board.names.items() if named == pin)
 
 
-def wire_texts(kind: Kind, claims: Mapping[str, Assignment], target: Target) -> list[str]:
+def wire_texts(kind: Kind, claims: Mapping[str, Assignment], target: Computer) -> list[str]:
     """The pin of each signal, such as ``a GP10``, of a component with these ``claims``.  Empty if there are no pins."""
     return [f"{signal} {target.board.pin_title(pin)}" for signal, pin, _ in _signals(target, kind, claims)]
 

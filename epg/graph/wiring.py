@@ -14,7 +14,7 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 
 from epg.generator.catalog.board_layout import Contact, Layout
-from epg.generator.catalog.hardware import Target
+from epg.generator.catalog.hardware import Computer
 from epg.generator.check.configuration import Component
 from epg.generator.dataclass import dataclass
 from epg.generator.resolve.allocation import Assignment
@@ -111,7 +111,7 @@ class _Pad:
     ``wrong`` is True if the pin of one of these terminals is an error.
     """
 
-    target: Target
+    target: Computer
     layout: Layout
     place: float
     contact: Contact
@@ -187,7 +187,7 @@ class _Part:
 
 
 def draw_wiring(
-    target: Target,
+    target: Computer,
     components: Mapping[str, Component],
     assignments: Mapping[ClaimKey, Assignment],
     title: str,
@@ -243,7 +243,7 @@ def _edges(layout: Layout, frame: _Frame) -> list[Edge]:
     return [edge for edge in edges if edge.contacts]
 
 
-def _frame(target: Target, layout: Layout) -> _Frame:
+def _frame(target: Computer, layout: Layout) -> _Frame:
     """The measures: the names of all contacts have room on the board."""
     lines = 1 + int(max(max(places_of(layout, side), default=0) for side in ("left", "right")))
     pitch = _PITCH if lines <= _MANY else _NARROW_PITCH
@@ -269,7 +269,7 @@ def _board(picture: Picture, layout: Layout, frame: _Frame, summary: str, title:
     picture.text(0, above - 18, told, "middle", 12, "bold")
 
 
-def _contact_name(target: Target, contact: Contact) -> str:
+def _contact_name(target: Computer, contact: Contact) -> str:
     """The name of a contact; that of a pin is followed by the names on the board."""
     if not contact.pin:
         return contact.name
@@ -277,7 +277,7 @@ def _contact_name(target: Target, contact: Contact) -> str:
 
 
 def _pads(
-    target: Target,
+    target: Computer,
     layout: Layout,
     side: str,
     found: Sequence[Terminal],
@@ -611,12 +611,14 @@ def _legend(choice: PinChoice | None) -> list[tuple[str, str]]:
     return [*result, ("reserved", "reserved: used by the board itself, or by other code")]
 
 
-def _told(target: Target, contact: Contact) -> str:
+def _told(target: Computer, contact: Contact) -> str:
     title = target.board.pin_title(contact.pin)
     return f"contact {contact.title} ({title})" if contact.title else title
 
 
-def _description(target: Target, layout: Layout, sides: Mapping[str, Sequence[Terminal]], others: Sequence[str]) -> str:
+def _description(
+    target: Computer, layout: Layout, sides: Mapping[str, Sequence[Terminal]], others: Sequence[str]
+) -> str:
     wires = [f"{t.component} {t.signal} to {_told(target, t.contact)}" for found in sides.values() for t in found]
     told = "; ".join([*wires, *others]) or "no wires"
     return f"{target.board.summary} seen from above, {layout.top} at the top: {told}."

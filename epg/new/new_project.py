@@ -17,7 +17,7 @@ from pathlib import Path
 
 import epg
 from epg.edit.bindings_text import new_bindings
-from epg.generator.catalog.catalog import Catalog, Target, load_catalog, target_hint
+from epg.generator.catalog.catalog import Catalog, Computer, load_catalog, target_hint
 from epg.generator.catalog.middleware import Middleware
 from epg.generator.check.communication import CONSOLE
 from epg.generator.check.configuration import Component, Configuration
@@ -93,7 +93,7 @@ class _Base:
     middleware of the predefined configuration stays, ``middleware`` is empty and ``written`` is None.
     """
 
-    target: Target
+    target: Computer
     templates: Path
     extends: str
     configuration: Configuration | None
@@ -242,7 +242,7 @@ def _report_unknown(
 
 
 def _choose_middleware(
-    target: Target,
+    target: Computer,
     configuration: Configuration | None,
     wanted: str | None,
     catalog: Catalog,

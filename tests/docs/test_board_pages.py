@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 from epg.cli.main import main
-from epg.generator.catalog.catalog import Target, load_catalog
+from epg.generator.catalog.catalog import Computer, load_catalog
 from epg.generator.catalog.hardware import Divider
 from epg.generator.data import targets_roots
 from epg.generator.diagnostics import Diagnostics
@@ -37,20 +37,20 @@ def page(board: str) -> Path:
     return ROOT / f"docs/boards/{board}.md"
 
 
-def target(board: str) -> Target:
+def target(board: str) -> Computer:
     found = load_catalog(targets_roots(), Diagnostics()).find_target(f"{board}_bare_metal")
     assert found is not None
     return found
 
 
-def timers(found: Target) -> Fraction:
+def timers(found: Computer) -> Fraction:
     """The clock of an STM32's timers on APB2, which TIM1 divides."""
     frequency = found.clocks["apb2_timers"].frequency
     assert frequency is not None
     return frequency
 
 
-def clk_sys(found: Target) -> Fraction:
+def clk_sys(found: Computer) -> Fraction:
     frequency = found.clocks["sys"].frequency
     assert frequency is not None
     return frequency
@@ -237,7 +237,7 @@ def test_numbers_of_the_f767_are_true(capsys: pytest.CaptureFixture[str]) -> Non
     assert f"chooses {loop.removeprefix('timer ')} for the control loop" in " ".join(text.split())
 
 
-def target_of_zephyr() -> Target:
+def target_of_zephyr() -> Computer:
     found = load_catalog(targets_roots(), Diagnostics()).find_target("nucleo_h743zi_zephyr")
     assert found is not None
     return found

@@ -55,6 +55,8 @@ SAME_FILES = {
     "topics.py": LAYERS,
 }
 """Names of several files of ``epg/``, with the reason.  A subcommand in ``epg/cli`` has the name of its work."""
+UNNAMED = set("Access Agent Console Fault Item Lateness Macro PortLayer Robot Sample Setpoint Transport".split())
+"""Classes with the name and the meaning of a term, whose entry does not name them."""
 _C = re.compile(r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|/\*.*?\*/|//[^\n]*', re.DOTALL)
 
 
@@ -148,15 +150,29 @@ def class_names(place: Path) -> list[str]:
     return [node.name for body in bodies for node in body if isinstance(node, ast.ClassDef)]
 
 
-def test_each_class_of_an_entry_exists() -> None:
-    """An entry names at most one class, ``package.Class`` in ``epg``, and its term has no other entry."""
+def entries() -> list[tuple[list[str], list[str]]]:
+    """The terms of each entry, and the classes that it names."""
     lines = GLOSSARY.read_text(encoding="utf-8").partition("\n## Words that are not used\n")[0].splitlines()
     rows = [line.strip("| ").split(" | ", 1) for line in lines if line.startswith("| ") and "---" not in line]
-    terms = [term.strip("` ") for names, _ in rows[1:] for term in names.split(",") if names != "term"]
+    return [
+        ([term.strip("` ") for term in names.split(",")], re.findall(r"[Cc]lass `([\w.]+)`", meaning))
+        for names, meaning in rows
+        if names != "term"
+    ]
+
+
+def test_a_class_with_the_name_of_a_term_has_its_meaning() -> None:
+    named = {re.sub("[ -]", "", term).lower(): found for terms, found in entries() for term in terms}
+    types = {name for path in files("epg/*.py") for name in type_names(path) if not name.isupper()}
+    assert {name for name in types if not named.get(name.lower(), [name])} == UNNAMED
+
+
+def test_each_class_of_an_entry_exists() -> None:
+    """An entry names at most one class, ``package.Class`` in ``epg``, and its term has no other entry."""
+    terms = [term for names, _ in entries() for term in names]
     assert len(terms) > 70 and len(set(terms)) == len(terms)
-    named = {names: re.findall(r"[Cc]lass `([\w.]+)`", meaning) for names, meaning in rows}
-    classes = [name for found in named.values() for name in found]
-    assert {names: found for names, found in named.items() if len(found) > 1} == {}
+    classes = [name for _, found in entries() for name in found]
+    assert [names for names, found in entries() if len(found) > 1] == []
     assert len(classes) > 25 and len(set(classes)) == len(classes)
     missing = []
     for name in classes:

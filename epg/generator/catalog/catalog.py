@@ -20,7 +20,7 @@ from epg.generator.catalog.check_file import check_file
 from epg.generator.catalog.check_hardware import check_target
 from epg.generator.catalog.check_middleware import check_offers
 from epg.generator.catalog.clocks import with_frequencies
-from epg.generator.catalog.hardware import Board, Soc, Target, make_board, make_soc
+from epg.generator.catalog.hardware import Board, Computer, Soc, make_board, make_soc
 from epg.generator.catalog.kind import Kind, KindPort, make_kind
 from epg.generator.catalog.middleware import Middleware, make_middleware
 from epg.generator.catalog.platform import Family, Platform, make_family, make_platform, platform_for, with_added
@@ -33,7 +33,7 @@ from epg.generator.documents.tcf import predefined_tcf_names
 from epg.generator.documents.yaml_file import load_yaml
 from epg.generator.source import Span, YamlNode
 
-__all__ = ["Catalog", "Kind", "KindPort", "Target", "load_catalog"]
+__all__ = ["Catalog", "Computer", "Kind", "KindPort", "load_catalog"]
 
 FOLDERS = {
     "soc": "socs",
@@ -97,7 +97,7 @@ class Catalog:
         """The kind ``name``, or None if it does not exist or has mistakes."""
         return self._item("component", name, make_kind)
 
-    def find_target(self, name: str) -> Target | None:
+    def find_target(self, name: str) -> Computer | None:
         """The target ``name``, or None if it does not exist or has mistakes."""
         return self._target(name)[0]
 
@@ -126,7 +126,7 @@ class Catalog:
         hint = correction(name, meant[0], "write '{}'") if len(meant) == 1 else f"write {either}"
         return and_then(hint, _ALSO_SEARCHED)
 
-    def target(self, name: str, span: Span, diagnostics: Diagnostics) -> Target | None:
+    def target(self, name: str, span: Span, diagnostics: Diagnostics) -> Computer | None:
         """The target ``name``, or None after reporting mistakes in its files, or at ``span`` that it does not exist."""
         target, exists = self._target(name)
         if not exists:
@@ -134,7 +134,7 @@ class Catalog:
             diagnostics.error("unknown-target", span, f"there is no target '{name}'", hint=hint)
         return target
 
-    def _target(self, name: str) -> tuple[Target | None, bool]:
+    def _target(self, name: str) -> tuple[Computer | None, bool]:
         """The target, and True if a target of that name exists.
 
         The target is None if it does not exist, or after reporting mistakes in its files.
@@ -155,13 +155,13 @@ class Catalog:
                 if platform.by_family and soc.family in self._paths("family") and self.find_family(soc.family) is None:
                     return None, True
                 continue
-            target = Target(name, board, soc, with_added(on_chip, self._added()))
+            target = Computer(name, board, soc, with_added(on_chip, self._added()))
             if not self._check_target(target):
                 return None, True
             return replace(target, clocks=with_frequencies(soc.clocks, target.board_clocks)), True
         return None, False
 
-    def _check_target(self, target: Target) -> bool:
+    def _check_target(self, target: Computer) -> bool:
         """True if board, chip, platform and middlewares fit together.  Reports the mistakes otherwise."""
         mistakes = Diagnostics()
         check_offers(target, self.names("middleware"), mistakes)

@@ -12,7 +12,7 @@ from collections.abc import Collection, Iterable, Sequence
 from types import MappingProxyType
 
 from epg.generator.catalog.clocks import check_clocks, check_stated
-from epg.generator.catalog.hardware import Target, listed_pins, names_of
+from epg.generator.catalog.hardware import Computer, listed_pins, names_of
 from epg.generator.diagnostics import Diagnostics, Note, did_you_mean
 from epg.generator.documents.items import (
     elements_of,
@@ -136,7 +136,7 @@ def _check_expression(node: YamlNode | None, diagnostics: Diagnostics) -> None:
         diagnostics.error("wrong-value", node.span, f"this is not a regular expression: {error.msg}", hint=hint)
 
 
-def check_target(target: Target, diagnostics: Diagnostics) -> None:
+def check_target(target: Computer, diagnostics: Diagnostics) -> None:
     """Checks that board, chip and platform fit together.
 
     The chip must have all pins and resource classes that the board names, and a class for the platform's tick.
@@ -160,7 +160,7 @@ def check_target(target: Target, diagnostics: Diagnostics) -> None:
     _check_tick(target, diagnostics)
 
 
-def _check_tick(target: Target, diagnostics: Diagnostics) -> None:
+def _check_tick(target: Computer, diagnostics: Diagnostics) -> None:
     """Checks that the chip has a timer for the control loop, if the platform needs one."""
     soc = target.soc
     tick = target.platform.node.get("tick", "class")

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from epg.generator.catalog.hardware import Target
+from epg.generator.catalog.hardware import Computer
 from epg.generator.catalog.parameter import parameter_problems
 from epg.generator.diagnostics import Diagnostics
 from epg.generator.documents.items import map_of, texts_of
@@ -39,7 +39,7 @@ def check_middleware(node: YamlNode, diagnostics: Diagnostics) -> None:
         diagnostics.error("missing-key", node["middleware"].span, message, hint=hint)
 
 
-def check_offers(target: Target, known: Sequence[str], diagnostics: Diagnostics) -> None:
+def check_offers(target: Computer, known: Sequence[str], diagnostics: Diagnostics) -> None:
     """Reports names in ``middlewares`` of a platform that are not among the ``known`` middlewares."""
     offered = target.platform.offers["middlewares"]
     for name in target.platform.middlewares:

@@ -230,7 +230,7 @@ class Board:
 
 
 @dataclass(frozen=True)
-class Target:
+class Computer:
     """A board with a platform, which the key ``target`` of a ``.tcf`` names.
 
     ``clocks`` have the frequencies of the chip and the board; those of a ``.tcf`` replace them in its configuration.

@@ -8,7 +8,7 @@ from fractions import Fraction
 from types import MappingProxyType
 from typing import NamedTuple
 
-from epg.generator.catalog.catalog import Catalog, Target
+from epg.generator.catalog.catalog import Catalog, Computer
 from epg.generator.catalog.middleware import Middleware
 from epg.generator.check.compose import communication_schema, console_schema, typed_options
 from epg.generator.check.middleware import check_lack, check_offer, needs_component, offered, unoffered_hint
@@ -31,7 +31,7 @@ class _Offer(NamedTuple):
     ``carries`` maps each component without mistakes to True if it can carry the bytes of a middleware.
     """
 
-    target: Target
+    target: Computer
     middlewares: Mapping[str, tuple[str, ...]]
     components: YamlNode
     carries: Mapping[str, bool]
@@ -91,7 +91,7 @@ class Communication:
         return (self.middleware,) if self.console is None else (self.middleware, self.console)
 
 
-def tools_for(target: Target, communication: Communication) -> set[str]:
+def tools_for(target: Computer, communication: Communication) -> set[str]:
     """The names of the tools that a build needs: for the target, its middlewares, and its USB device."""
     family = target.platform.family
     usb = family.usb_needs if family is not None and communication.usb else ()
@@ -99,7 +99,7 @@ def tools_for(target: Target, communication: Communication) -> set[str]:
 
 
 def check_communication(
-    root: YamlNode, target: Target | None, carries: Mapping[str, bool], catalog: Catalog, diagnostics: Diagnostics
+    root: YamlNode, target: Computer | None, carries: Mapping[str, bool], catalog: Catalog, diagnostics: Diagnostics
 ) -> Communication | None:
     """The communication of a target, or None after reporting mistakes; also None if ``target`` is None.
 
@@ -146,7 +146,7 @@ def check_communication(
 
 
 def _choice(
-    node: YamlNode | None, target: Target, catalog: Catalog, diagnostics: Diagnostics
+    node: YamlNode | None, target: Computer, catalog: Catalog, diagnostics: Diagnostics
 ) -> tuple[Middleware | None, Mapping[str, tuple[str, ...]]]:
     """The middleware, and all possible ones.  Reports a middleware that the target does not have."""
     possible = dict(target.platform.middlewares)
@@ -231,12 +231,12 @@ def _console_transport(
     return str(stated.value)
 
 
-def _uses_usb(target: Target, transport: str | None, console: _Console) -> bool:
+def _uses_usb(target: Computer, transport: str | None, console: _Console) -> bool:
     on_platform = console.middleware is not None and console.transport is None
     return transport == "usb" or (on_platform and "usb" in target.platform.middlewares.get(CONSOLE, ()))
 
 
-def _usb(node: YamlNode | None, target: Target, used: bool, diagnostics: Diagnostics) -> Mapping[str, object]:
+def _usb(node: YamlNode | None, target: Computer, used: bool, diagnostics: Diagnostics) -> Mapping[str, object]:
     """The stated names and numbers of the target as a USB device; if it is ``used``, also the family's defaults.
 
     Reports them on a platform that sets the names in another way.  A platform without USB ignores them: another target

@@ -10,7 +10,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from epg.generator.catalog.catalog import Catalog, Kind, Target
+from epg.generator.catalog.catalog import Catalog, Computer, Kind
 from epg.generator.catalog.clocks import check_stated, with_frequencies
 from epg.generator.check.bindings import Conversion, conversion_of
 from epg.generator.check.communication import Communication, check_communication, time_of
@@ -81,7 +81,7 @@ class Configuration:
     model.
     """
 
-    target: Target
+    target: Computer
     node: str
     namespace: str
     control: Control
@@ -183,7 +183,7 @@ def with_other_code(
     return replace(configuration, others=others, files=(*configuration.files, ioc.path))
 
 
-def _with_clocks(target: Target, root: YamlNode, diagnostics: Diagnostics) -> Target:
+def _with_clocks(target: Computer, root: YamlNode, diagnostics: Diagnostics) -> Computer:
     """The target with the frequencies of clocks in the ``.tcf``.  Reports the mistakes in them.
 
     A target that simulates the robot ignores clocks that it does not have, as it ignores pins: the ``.tcf`` can be for
@@ -200,7 +200,7 @@ def _with_clocks(target: Target, root: YamlNode, diagnostics: Diagnostics) -> Ta
 
 
 def check_components(
-    root: YamlNode, target: Target | None, catalog: Catalog, diagnostics: Diagnostics, pins_required: bool
+    root: YamlNode, target: Computer | None, catalog: Catalog, diagnostics: Diagnostics, pins_required: bool
 ) -> dict[str, Component]:
     """The components without mistakes, by name.  Reports the mistakes of the others."""
     section = root["components"]

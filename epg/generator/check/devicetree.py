@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from epg.generator.catalog.hardware import Target
+from epg.generator.catalog.hardware import Computer
 from epg.generator.catalog.kind import Kind
 from epg.generator.diagnostics import Diagnostics
 from epg.generator.documents.schema import extended_from
@@ -11,7 +11,7 @@ from epg.generator.source import YamlNode
 
 
 def check_node(
-    kind: Kind, component: YamlNode, node: YamlNode, target: Target | None, diagnostics: Diagnostics
+    kind: Kind, component: YamlNode, node: YamlNode, target: Computer | None, diagnostics: Diagnostics
 ) -> None:
     """Reports a ``node`` of a component that cannot have one.
 

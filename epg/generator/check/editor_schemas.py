@@ -18,7 +18,7 @@ import itertools
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypeVar
 
-from epg.generator.catalog.catalog import Catalog, Kind, Target
+from epg.generator.catalog.catalog import Catalog, Computer, Kind
 from epg.generator.catalog.middleware import Middleware
 from epg.generator.check.compose import communication_schema, component_schema
 from epg.generator.check.middleware import needs_component, offered
@@ -141,7 +141,7 @@ def _pins_needed(kind: Kind) -> EditorSchema:
     return {"oneOf": [wired, {"required": ["node"]}]} if len(kind.claims) == 1 else wired
 
 
-def _clocks(targets: Iterable[Target]) -> list[EditorSchema]:
+def _clocks(targets: Iterable[Computer]) -> list[EditorSchema]:
     """The names of the clocks of each chip, for files that name a target with it.  Simulations ignore other clocks."""
     names: dict[tuple[str, ...], list[str]] = {}
     for target in targets:
@@ -156,12 +156,12 @@ def _clocks(targets: Iterable[Target]) -> list[EditorSchema]:
     ]
 
 
-def _middlewares(targets: Iterable[Target], catalog: Catalog, named: bool) -> list[EditorSchema]:
+def _middlewares(targets: Iterable[Computer], catalog: Catalog, named: bool) -> list[EditorSchema]:
     """The middlewares and transports of each platform on each family of chips, for files that name such a target.
 
     ``named`` is True if a transport can also be the name of a component.
     """
-    platforms: dict[str, list[Target]] = {}
+    platforms: dict[str, list[Computer]] = {}
     for target in targets:
         family = target.platform.family
         offers = sorted(target.platform.middlewares.items())

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from epg.generator.catalog.catalog import Catalog, Target
+from epg.generator.catalog.catalog import Catalog, Computer
 from epg.generator.catalog.middleware import Middleware
 from epg.generator.correction import correction
 from epg.generator.diagnostics import Diagnostics, Note, did_you_mean
@@ -14,7 +14,7 @@ from epg.generator.documents.schema import extended_from
 from epg.generator.source import YamlNode
 
 
-def offered(target: Target, catalog: Catalog) -> dict[str, tuple[str, ...]]:
+def offered(target: Computer, catalog: Catalog) -> dict[str, tuple[str, ...]]:
     """The possible middlewares of a target, with their transports.
 
     First the middlewares that the platform names, then those whose own file names the platform and the family of chips.
@@ -27,12 +27,12 @@ def offered(target: Target, catalog: Catalog) -> dict[str, tuple[str, ...]]:
     return result
 
 
-def _supports(middleware: Middleware, target: Target) -> bool:
+def _supports(middleware: Middleware, target: Computer) -> bool:
     family = target.platform.family
     return family is None or not middleware.families or family.name in middleware.families
 
 
-def first_middleware(target: Target, catalog: Catalog) -> str:
+def first_middleware(target: Computer, catalog: Catalog) -> str:
     """The name of the first middleware of the platform that can be built; "none" if there is no other."""
     found = (catalog.find_middleware(name) for name in target.platform.middlewares)
     good = (middleware.name for middleware in found if middleware is not None and middleware.builds)
@@ -65,12 +65,12 @@ def _meant(name: str, catalog: Catalog) -> list[Middleware]:
     return own or [each for each in found if word in (each.name, *texts_of(each.node, "also"))]
 
 
-def needs_component(middleware: Middleware, target: Target, own: Sequence[str]) -> bool:
+def needs_component(middleware: Middleware, target: Computer, own: Sequence[str]) -> bool:
     """True if only a component can carry the bytes of ``middleware``: the port layer has no transport of its own."""
     return middleware.connection == "stream" and target.platform.family is not None and not own
 
 
-def check_offer(target: Target, middleware: Middleware, diagnostics: Diagnostics) -> None:
+def check_offer(target: Computer, middleware: Middleware, diagnostics: Diagnostics) -> None:
     """Reports a platform that names transports for a middleware that does not use one."""
     transports = target.platform.offers.get("middlewares", middleware.name)
     if transports is None:
@@ -82,7 +82,7 @@ def check_offer(target: Target, middleware: Middleware, diagnostics: Diagnostics
         diagnostics.error("wrong-value", transports.span, message, hint=hint, notes=notes)
 
 
-def check_lack(target: Target | None, transport: str | None, where: YamlNode, diagnostics: Diagnostics) -> None:
+def check_lack(target: Computer | None, transport: str | None, where: YamlNode, diagnostics: Diagnostics) -> None:
     """Reports a transport that the platform has on other boards, but not on the board of this target."""
     if target is not None and transport is not None and transport in target.board.lacks:
         message = f"{target.board.name} has no transport '{transport}': {target.board.lacks[transport]}"

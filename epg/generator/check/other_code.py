@@ -15,7 +15,7 @@ from fractions import Fraction
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from epg.generator.catalog.hardware import Soc, Target
+from epg.generator.catalog.hardware import Computer, Soc
 from epg.generator.dataclass import dataclass
 from epg.generator.diagnostics import Diagnostics, Note
 from epg.generator.quantity import show
@@ -73,7 +73,7 @@ NO_OTHER_CODE = OtherCode()
 
 
 def check_other_code(
-    ioc: Ioc, target: Target, target_span: Span, diagnostics: Diagnostics, wanted_by: Span | None = None
+    ioc: Ioc, target: Computer, target_span: Span, diagnostics: Diagnostics, wanted_by: Span | None = None
 ) -> OtherCode:
     """The use of the chip that ``ioc`` states.  ``wanted_by`` is the position at which the file is named.
 
@@ -103,7 +103,7 @@ def check_other_code(
     )
 
 
-def _instances(ioc: Ioc, listed: Mapping[str, IocEntry], target: Target) -> dict[str, OtherUse]:
+def _instances(ioc: Ioc, listed: Mapping[str, IocEntry], target: Computer) -> dict[str, OtherUse]:
     """The instances of the chip's peripherals that other code uses, also as its time base."""
     known = {name for peripheral in target.soc.peripherals.values() for name in peripheral.instances}
     instances = {name: OtherUse(name, entry.span) for name, entry in listed.items() if name in known}
@@ -115,7 +115,7 @@ def _instances(ioc: Ioc, listed: Mapping[str, IocEntry], target: Target) -> dict
     return instances
 
 
-def _refuse(ioc: Ioc, target: Target, wanted_by: Span | None, diagnostics: Diagnostics) -> None:
+def _refuse(ioc: Ioc, target: Computer, wanted_by: Span | None, diagnostics: Diagnostics) -> None:
     """Reports a file for a target of which EPG does not know the chip.
 
     Such a target has one clock for all timers, of the highest frequency that one of them has.
@@ -138,7 +138,7 @@ def _refuse(ioc: Ioc, target: Target, wanted_by: Span | None, diagnostics: Diagn
     diagnostics.error("ioc-own-drivers", wanted_by or Span(str(ioc.path)), message, hint=hint, notes=notes)
 
 
-def _is_for(ioc: Ioc, target: Target, target_span: Span, diagnostics: Diagnostics) -> bool:
+def _is_for(ioc: Ioc, target: Computer, target_span: Span, diagnostics: Diagnostics) -> bool:
     """True if the file is for the chip of the target, or if the target has no pins of a chip.
 
     Reports a file for another chip, and one that names no chip.
@@ -191,7 +191,7 @@ def _clocks(ioc: Ioc, soc: Soc) -> dict[str, tuple[Fraction, Span]]:
     return result
 
 
-def _report_own(own: Iterable[str], others: Mapping[str, OtherUse], target: Target, diagnostics: Diagnostics) -> None:
+def _report_own(own: Iterable[str], others: Mapping[str, OtherUse], target: Computer, diagnostics: Diagnostics) -> None:
     """Reports instances that EPG's port layer uses itself."""
     for name in own:
         if name in others:
@@ -200,7 +200,7 @@ def _report_own(own: Iterable[str], others: Mapping[str, OtherUse], target: Targ
             diagnostics.error("ioc-used-by-epg", others[name].span, message, hint=hint)
 
 
-def _report_priorities(ioc: Ioc, target: Target, diagnostics: Diagnostics) -> None:
+def _report_priorities(ioc: Ioc, target: Computer, diagnostics: Diagnostics) -> None:
     """Warns of interrupts that could delay the tick of the control loop.  The start of the target verifies them."""
     group = ioc.entries.get("NVIC.PriorityGroup")
     if group is not None and group.value != _FOUR_BITS:

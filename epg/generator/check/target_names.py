@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from epg.generator.catalog.catalog import Catalog
-from epg.generator.catalog.hardware import Target
+from epg.generator.catalog.hardware import Computer
 from epg.generator.check.configuration import Configuration
 from epg.generator.check.names import (
     STANDARD_HEADERS,
@@ -47,7 +47,7 @@ def check_library_name(name: str, span: Span, diagnostics: Diagnostics) -> None:
         diagnostics.error("invalid-name", span, message, hint=f"choose another name, such as {name}_model")
 
 
-def check_sdk_headers(name: str, target: Target, span: Span, diagnostics: Diagnostics) -> None:
+def check_sdk_headers(name: str, target: Computer, span: Span, diagnostics: Diagnostics) -> None:
     """Reports a generated header that would hide a header of the SDK."""
     for header in sorted(_generated_headers(name).intersection(target.platform.headers)):
         message = f"target '{name}' would generate a header '{header}', which hides one that {target.name} needs"

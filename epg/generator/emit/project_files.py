@@ -12,7 +12,7 @@ from dataclasses import field
 from pathlib import Path
 from typing import ClassVar
 
-from epg.generator.catalog.hardware import Target
+from epg.generator.catalog.hardware import Computer
 from epg.generator.dataclass import dataclass
 from epg.generator.emit.template import environment
 from epg.generator.emit.text import ProjectText
@@ -73,7 +73,7 @@ class ProjectPlan:
     """
 
     name: str
-    target: Target
+    target: Computer
     extends: str
     middleware: str
     transport: str

@@ -18,7 +18,7 @@ from dataclasses import field, replace
 from fractions import Fraction
 from types import MappingProxyType
 
-from epg.generator.catalog.hardware import Peripheral, ResourceClass, Target
+from epg.generator.catalog.hardware import Computer, Peripheral, ResourceClass
 from epg.generator.check.other_code import NO_OTHER_CODE, OtherCode
 from epg.generator.dataclass import dataclass
 from epg.generator.diagnostics import Diagnostics, Note, did_you_mean
@@ -103,7 +103,7 @@ Assignments = Mapping[ClaimKey, Assignment]
 
 
 def allocate(
-    claims: Sequence[Claim], target: Target, diagnostics: Diagnostics, others: OtherCode = NO_OTHER_CODE
+    claims: Sequence[Claim], target: Computer, diagnostics: Diagnostics, others: OtherCode = NO_OTHER_CODE
 ) -> Assignments | None:
     """An assignment for each claim, or None after reporting mistakes and conflicts.
 
@@ -143,7 +143,7 @@ def _on_peripheral(
     return result
 
 
-def as_written(claims: Sequence[Claim], target: Target) -> Assignments:
+def as_written(claims: Sequence[Claim], target: Computer) -> Assignments:
     """The pins of claims as the ``.tcf`` states them, also if they are in conflict, without peripherals.
 
     Pins that the chip does not have are left out.
@@ -158,7 +158,7 @@ def as_written(claims: Sequence[Claim], target: Target) -> Assignments:
     return MappingProxyType(result)
 
 
-def _nodes(claims: Sequence[Claim], target: Target, diagnostics: Diagnostics) -> dict[ClaimKey, Assignment]:
+def _nodes(claims: Sequence[Claim], target: Computer, diagnostics: Diagnostics) -> dict[ClaimKey, Assignment]:
     """The assignments of claims that name a devicetree node.
 
     They take no peripheral or pin of the chip.  Their numbers in C count down from :data:`NODES`, so that they differ
@@ -190,7 +190,7 @@ def _nodes(claims: Sequence[Claim], target: Target, diagnostics: Diagnostics) ->
     return result
 
 
-def _check(claims: Sequence[Claim], pins: Pins, target: Target, diagnostics: Diagnostics) -> list[Candidate]:
+def _check(claims: Sequence[Claim], pins: Pins, target: Computer, diagnostics: Diagnostics) -> list[Candidate]:
     """The claims without mistakes.  Reports the mistakes of the others."""
     result: list[Candidate] = []
     dividers = Dividers(target, diagnostics)
@@ -219,7 +219,7 @@ def _check(claims: Sequence[Claim], pins: Pins, target: Target, diagnostics: Dia
     return result
 
 
-def _class(claim: Claim, target: Target, diagnostics: Diagnostics) -> ResourceClass | None:
+def _class(claim: Claim, target: Computer, diagnostics: Diagnostics) -> ResourceClass | None:
     """The resource class of a claim on this target.  Reports classes and signals that do not exist; then it is None."""
     resource_class = target.resource_class(claim.resource_class)
     if resource_class is None:
@@ -249,7 +249,7 @@ def _has_signals(claim: Claim, resource_class: ResourceClass, with_pins: bool, d
     return not unknown and not missing
 
 
-def _check_support(claim: Claim, resource_class: ResourceClass, target: Target, diagnostics: Diagnostics) -> None:
+def _check_support(claim: Claim, resource_class: ResourceClass, target: Computer, diagnostics: Diagnostics) -> None:
     """Reports attributes with a value that this chip does not support."""
     for attribute, value in claim.attributes.items():
         unsupported = resource_class.unsupported.get((attribute, str(value)))
@@ -261,7 +261,7 @@ def _check_support(claim: Claim, resource_class: ResourceClass, target: Target, 
 
 
 def _better(
-    candidates: Sequence[Candidate], chosen: tuple[Place, ...], peripheral: Peripheral, target: Target
+    candidates: Sequence[Candidate], chosen: tuple[Place, ...], peripheral: Peripheral, target: Computer
 ) -> dict[ClaimKey, Place]:
     """The places ``chosen`` for ``candidates``, or better ones."""
     costs = _costs(peripheral)
@@ -277,7 +277,7 @@ def _better(
     return places
 
 
-def _start(candidate: Candidate, places: Mapping[ClaimKey, Place], peripheral: Peripheral, target: Target) -> str:
+def _start(candidate: Candidate, places: Mapping[ClaimKey, Place], peripheral: Peripheral, target: Computer) -> str:
     """The start of an instance that starts together with the timer of the control loop; empty for others."""
     family = target.platform.family
     if family is None or not target.tick_starts or candidate.resource_class.name != target.tick_starts:
@@ -313,7 +313,7 @@ def _costs(peripheral: Peripheral) -> list[int]:
     return counts
 
 
-def _assignment(candidate: Candidate, peripheral: Peripheral, place: Place, target: Target) -> Assignment:
+def _assignment(candidate: Candidate, peripheral: Peripheral, place: Place, target: Computer) -> Assignment:
     instance, slot = place
     settings: dict[str, int] = {}
     clock = frequency = asked = None
@@ -342,7 +342,7 @@ def _assignment(candidate: Candidate, peripheral: Peripheral, place: Place, targ
     )
 
 
-def _functions(candidate: Candidate, peripheral: Peripheral, place: Place, target: Target) -> dict[str, int]:
+def _functions(candidate: Candidate, peripheral: Peripheral, place: Place, target: Computer) -> dict[str, int]:
     """The alternate functions of the pins of a claim in its ``place``."""
     found: dict[str, int] = {}
     for signal, number in candidate.pins.items() if target.has_pins else ():
@@ -354,7 +354,7 @@ def _functions(candidate: Candidate, peripheral: Peripheral, place: Place, targe
     return found
 
 
-def _names(candidate: Candidate, target: Target) -> dict[str, str]:
+def _names(candidate: Candidate, target: Computer) -> dict[str, str]:
     """The chip's names of the pins of a claim.  Without real pins, only the names that users have given."""
     if target.has_pins:
         return {signal: target.soc.pins[number] for signal, number in candidate.pins.items()}
@@ -372,7 +372,7 @@ def _signals(
     )
 
 
-def _pins_only(candidate: Candidate, target: Target) -> Assignment:
+def _pins_only(candidate: Candidate, target: Computer) -> Assignment:
     numbers = list(candidate.pins.values())
     names = ", ".join(target.soc.pins[number] if target.has_pins else str(number) for number in numbers)
     kind = "pin" if target.has_pins else "digital pin" if target.soc.free_names else "simulated pin"

@@ -8,7 +8,7 @@ from dataclasses import field
 from fractions import Fraction
 from pathlib import Path
 
-from epg.generator.catalog.catalog import KindPort, Target
+from epg.generator.catalog.catalog import Computer, KindPort
 from epg.generator.check.bindings import ParameterSetting
 from epg.generator.check.communication import Communication
 from epg.generator.check.configuration import Component, Control
@@ -160,7 +160,7 @@ class Application:
     """
 
     name: str
-    target: Target
+    target: Computer
     target_span: Span
     node: str
     namespace: str

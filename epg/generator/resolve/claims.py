@@ -8,7 +8,7 @@ from dataclasses import field, replace
 from fractions import Fraction
 from types import MappingProxyType
 
-from epg.generator.catalog.hardware import Target
+from epg.generator.catalog.hardware import Computer
 from epg.generator.catalog.kind import KindClaim
 from epg.generator.check.configuration import Component, Configuration
 from epg.generator.dataclass import dataclass
@@ -64,7 +64,7 @@ def component_claims(configuration: Configuration) -> tuple[Claim, ...]:
     return tuple(_claims(configuration.components.values(), with_pins, target.platform.has_nodes))
 
 
-def tick_claims(target: Target, period: Fraction | None, span: Span) -> tuple[Claim, ...]:
+def tick_claims(target: Computer, period: Fraction | None, span: Span) -> tuple[Claim, ...]:
     """The claim of the control loop; empty if the platform times the loop without a peripheral.
 
     ``period`` is in seconds.  If it is None, because it is not known yet, the peripheral is claimed nevertheless.

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
-from epg.generator.catalog.hardware import Peripheral, ResourceClass, Target
+from epg.generator.catalog.hardware import Computer, Peripheral, ResourceClass
 from epg.generator.dataclass import dataclass
 from epg.generator.diagnostics import Diagnostics, Note
 from epg.generator.documents.items import pin_list
@@ -141,7 +141,7 @@ def _too_many(
     alike: Sequence[Candidate],
     possible: int,
     peripheral: Peripheral,
-    target: Target,
+    target: Computer,
     elsewhere: Sequence[Note],
     diagnostics: Diagnostics,
 ) -> None:
@@ -158,7 +158,7 @@ def _too_many(
 def _several(
     core: Sequence[Candidate],
     peripheral: Peripheral,
-    target: Target,
+    target: Computer,
     elsewhere: Sequence[Note],
     diagnostics: Diagnostics,
 ) -> None:

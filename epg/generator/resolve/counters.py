@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
-from epg.generator.catalog.hardware import COUNT_BITS, Target
+from epg.generator.catalog.hardware import COUNT_BITS, Computer
 from epg.generator.diagnostics import Diagnostics, Note
 from epg.generator.documents.schema import extended_from
 from epg.generator.quantity import show
@@ -47,7 +47,7 @@ def counts_per_second(attributes: Mapping[str, object]) -> Fraction | None:
     return turns * _number(attributes["counts_per_revolution"])
 
 
-def counter_bits(found: Assignment, claim: Claim, target: Target) -> int:
+def counter_bits(found: Assignment, claim: Claim, target: Computer) -> int:
     """The bits of the counter behind an assignment, at most the 32 that drivers are given."""
     resource_class = target.resource_class(claim.resource_class)
     peripheral = target.soc.peripherals.get((resource_class and resource_class.peripheral) or "")
@@ -58,7 +58,7 @@ def counter_bits(found: Assignment, claim: Claim, target: Target) -> int:
     return min(bits, stated if isinstance(stated, int) else bits, COUNT_BITS)
 
 
-def longest_gap(found: Assignment, claim: Claim, target: Target) -> Fraction | None:
+def longest_gap(found: Assignment, claim: Claim, target: Computer) -> Fraction | None:
     """The time in seconds in which the counter moves by half of its range; None if the greatest speed is not known."""
     rate = counts_per_second(found.attributes)
     return None if rate is None else 2 ** (counter_bits(found, claim, target) - 1) / rate
@@ -67,7 +67,7 @@ def longest_gap(found: Assignment, claim: Claim, target: Target) -> Fraction | N
 def check_counters(
     claims: Iterable[Claim],
     found: Mapping[ClaimKey, Assignment],
-    target: Target,
+    target: Computer,
     period: Fraction,
     period_span: Span,
     diagnostics: Diagnostics,
@@ -95,7 +95,7 @@ def check_counters(
         diagnostics.error("encoder-too-fast", place.span, message, hint=hint, notes=notes)
 
 
-def _wider(claim: Claim, bits: int, target: Target) -> list[str]:
+def _wider(claim: Claim, bits: int, target: Computer) -> list[str]:
     """The instances whose counters have more than ``bits``."""
     resource_class = target.resource_class(claim.resource_class)
     peripheral = target.soc.peripherals.get((resource_class and resource_class.peripheral) or "")

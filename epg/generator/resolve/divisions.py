@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from types import MappingProxyType
 
-from epg.generator.catalog.hardware import Divider, DividerInput, Peripheral, ResourceClass, Target
+from epg.generator.catalog.hardware import Computer, Divider, DividerInput, Peripheral, ResourceClass
 from epg.generator.diagnostics import Diagnostics, Note
 from epg.generator.documents.schema import extended_from
 from epg.generator.quantity import show
@@ -29,7 +29,7 @@ _MANY = 12  # digits in messages, so that values that are close to each other lo
 class Dividers:
     """The dividers of a target.  Reports claims that they cannot serve, and clocks whose frequency is missing."""
 
-    def __init__(self, target: Target, diagnostics: Diagnostics) -> None:
+    def __init__(self, target: Computer, diagnostics: Diagnostics) -> None:
         self.target = target
         self.diagnostics = diagnostics
         self._waiting: dict[str, list[Claim]] = {}
@@ -135,7 +135,7 @@ def _sources(peripheral: Peripheral, places: Iterable[Place]) -> list[DividerInp
     return list(dict.fromkeys(peripheral.sources[instance] for instance in instances))
 
 
-def input_frequency(target: Target, source: DividerInput) -> Fraction | None:
+def input_frequency(target: Computer, source: DividerInput) -> Fraction | None:
     """The frequency in Hz that a divider divides; None if no file sets it."""
     frequency = target.clocks[source.clock].frequency
     return None if frequency is None else frequency * source.factor

@@ -19,7 +19,7 @@ from dataclasses import replace
 from fractions import Fraction
 from types import MappingProxyType
 
-from epg.generator.catalog.hardware import Peripheral, ResourceClass, Target
+from epg.generator.catalog.hardware import Computer, Peripheral, ResourceClass
 from epg.generator.check.configuration import Configuration
 from epg.generator.dataclass import dataclass
 from epg.generator.diagnostics import Diagnostics
@@ -54,7 +54,7 @@ def signals_of(configuration: Configuration) -> dict[ClaimSignal, str]:
     return result
 
 
-def usable_pin(target: Target, written: str) -> bool:
+def usable_pin(target: Computer, written: str) -> bool:
     """True if the board has this pin, and components can use it."""
     pin = target.board.pin_name(written)
     return pin not in target.board.reserved and (pin in target.board.pins or pin in target.board.onboard)
@@ -76,12 +76,12 @@ def with_pins(configuration: Configuration, pins: Mapping[ClaimSignal, str]) -> 
     return result
 
 
-def complete_claims(claims: Sequence[Claim], target: Target) -> list[Claim]:
+def complete_claims(claims: Sequence[Claim], target: Computer) -> list[Claim]:
     """The claims whose signals all have pins: the others cannot be allocated yet."""
     return [claim for claim in claims if is_complete(claim, target)]
 
 
-def is_complete(claim: Claim, target: Target) -> bool:
+def is_complete(claim: Claim, target: Computer) -> bool:
     """True if all signals of a claim have pins, or if it cannot have pins on this target."""
     found = target.resource_class(claim.resource_class)
     return bool(claim.node) or found is None or all(signal in claim.signals for signal in found.signals)
@@ -301,7 +301,7 @@ class _Search:
         return agreement(claim, resource_class, peripheral, divisions)
 
 
-def _preferred(target: Target) -> list[str]:
+def _preferred(target: Computer) -> list[str]:
     """The pins with a contact, the best ones first: those with a printed name; those of the console last."""
     board = target.board
     printed, console = set(board.names.values()), set(board.devicetree.get(board.console, ()))

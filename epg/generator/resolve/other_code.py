@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from epg.generator.catalog.hardware import Peripheral, Target
+from epg.generator.catalog.hardware import Computer, Peripheral
 from epg.generator.check.configuration import Configuration
 from epg.generator.check.other_code import OtherCode
 from epg.generator.diagnostics import Diagnostics
@@ -88,18 +88,18 @@ def report_own_transports(configuration: Configuration, diagnostics: Diagnostics
             diagnostics.error("other-code-transport", span, message, hint=hint, notes=notes)
 
 
-def divided_clocks(target: Target) -> set[str]:
+def divided_clocks(target: Computer) -> set[str]:
     """The clocks that dividers of the chip divide."""
     return {source.clock for peripheral in target.soc.peripherals.values() for source in peripheral.sources}
 
 
-def clock_of(claim: Claim, instance: int, target: Target) -> str:
+def clock_of(claim: Claim, instance: int, target: Computer) -> str:
     """The clock that the divider of a claim divides if the claim has this instance."""
     resource_class = target.soc.classes[claim.resource_class]
     return target.soc.peripherals[resource_class.peripheral or ""].sources[instance].clock
 
 
-def compare_clocks(used: Iterable[str], target: Target, others: OtherCode, diagnostics: Diagnostics) -> None:
+def compare_clocks(used: Iterable[str], target: Computer, others: OtherCode, diagnostics: Diagnostics) -> None:
     """Warns of clocks in ``used`` that other code sets to another frequency than EPG has computed with."""
     for name in dict.fromkeys(used):
         clock = target.clocks[name]

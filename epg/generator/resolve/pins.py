@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from types import MappingProxyType
 
-from epg.generator.catalog.hardware import Peripheral, ResourceClass, Target
+from epg.generator.catalog.hardware import Computer, Peripheral, ResourceClass
 from epg.generator.check.other_code import NO_OTHER_CODE, OtherCode
 from epg.generator.diagnostics import Diagnostics, Note
 from epg.generator.documents.items import pin_list
@@ -21,7 +21,7 @@ class Pins:
     """The pins of one target while its claims are checked.  The pins of claims that were checked before are taken."""
 
     def __init__(
-        self, target: Target, claims: Iterable[Claim], diagnostics: Diagnostics, others: OtherCode = NO_OTHER_CODE
+        self, target: Computer, claims: Iterable[Claim], diagnostics: Diagnostics, others: OtherCode = NO_OTHER_CODE
     ) -> None:
         """``claims`` must be all claims of the target, so that hints name only pins that stay free."""
         self.target = target
