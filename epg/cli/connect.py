@@ -15,6 +15,7 @@ from epg.cli.arguments import add_target_arguments, request_of, user_roots
 from epg.cli.report import format_diagnostics, to_json
 from epg.cli.system import is_system
 from epg.generator.diagnostics import Diagnostics
+from epg.generator.system import here
 
 if TYPE_CHECKING:
     from epg.connect.projects import Job
@@ -156,9 +157,8 @@ def _serve(session: Session, options: argparse.Namespace) -> int:
         address = server.new_address()
         # In a thread: some browsers return only when they are closed.
         threading.Thread(target=_open_browser, args=(address,), daemon=True).start()
-    for name in ("SIGTERM", "SIGHUP"):  # end as after Ctrl-C, so that a running build is also ended
-        if hasattr(signal, name):
-            signal.signal(getattr(signal, name), signal.default_int_handler)
+    for number in here.END_SIGNALS:  # end as after Ctrl-C, so that a running build is also ended
+        signal.signal(number, signal.default_int_handler)
     try:
         server.run(until_closed=options.until_closed)
     except KeyboardInterrupt:
@@ -274,11 +274,8 @@ def _open_browser(address: str) -> None:
     """Opens the page in a graphical browser, if there is one.  A browser in the terminal would hide the address."""
     import webbrowser
 
-    shows = not sys.platform.startswith("linux") or any(
-        os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
-    )
     try:
-        browser = webbrowser.get() if shows else None
+        browser = webbrowser.get() if here.has_screen() else None
     except webbrowser.Error:
         browser = None
     if browser is None or Path(getattr(browser, "name", "")).name in _TEXT_BROWSERS or not browser.open(address):

@@ -6,6 +6,8 @@ from __future__ import annotations
 import signal
 import sys
 
+from epg.generator.system import here
+
 
 class ProgressLine:
     """One line on the terminal that each message overwrites.  Prints nothing if the output goes to a file."""
@@ -25,7 +27,7 @@ class ProgressLine:
 
 
 class StopRequest:
-    """``asked``, and True when called, after Ctrl-C, SIGTERM, or SIGHUP, which is the end of the terminal.
+    """``asked``, and True when called, after Ctrl-C, SIGTERM, or the end of the terminal.
 
     The command then ends normally, with complete files.
     """
@@ -34,10 +36,8 @@ class StopRequest:
         self.asked = False
 
     def __enter__(self) -> StopRequest:
-        numbers = [signal.SIGINT, signal.SIGTERM]
-        hangup = getattr(signal, "SIGHUP", None)  # Windows does not have it
-        if hangup is not None and signal.getsignal(hangup) is not signal.SIG_IGN:  # by `nohup`
-            numbers.append(hangup)
+        ends = [number for number in here.END_SIGNALS if signal.getsignal(number) is not signal.SIG_IGN]  # by `nohup`
+        numbers = [signal.SIGINT, *ends]
         self._before = {number: signal.signal(number, self._ask) for number in numbers}
         return self
 

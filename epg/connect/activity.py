@@ -137,13 +137,14 @@ class Activity:
         patience: float | None = None,
         line: Callable[[str], None] | None = None,
         modest: bool = False,
+        bound: bool = False,
     ) -> int:
         """Runs a program as the step called ``step``.  Returns its exit status.  Raises OSError.
 
         ``patience`` is the time in seconds after which the program is ended; None for no limit.  ``line`` gets its
-        lines of output in place of :meth:`read`.  A ``modest`` program has a low priority.
+        lines of output in place of :meth:`read`.  ``modest`` and ``bound`` are those of :class:`Process`.
         """
-        process = Process(command, folder, environment, line or self.read, modest=modest)
+        process = Process(command, folder, environment, line or self.read, modest=modest, bound=bound)
         with self._lock:
             self._process, self._step, self._action = process, step, ""
             self._done = self._total = 0

@@ -33,6 +33,7 @@ from epg.connect.body import boolean, number, text
 from epg.connect.keys import Keys
 from epg.connect.peer import is_another_user
 from epg.connect.session import Refused, Session
+from epg.generator.system import here
 from epg.graph.svg import style_sheet
 
 PAGE = Path(__file__).resolve().parent / "page"
@@ -158,7 +159,7 @@ class Server:
 
 class _Http(ThreadingHTTPServer):
     daemon_threads = True
-    allow_reuse_address = sys.platform != "win32"  # on Windows another program could then take over the port
+    allow_reuse_address = here.SHARES_PORTS
     owner: Server
 
     def handle_error(self, request: object, client_address: object) -> None:

@@ -60,46 +60,20 @@ def cache_folder() -> Path:
     """The folder of EPG's cache: ``$EPG_CACHE``, else ``~/.cache/epg`` (``%LOCALAPPDATA%\\epg`` on Windows)."""
     if os.environ.get("EPG_CACHE"):
         return Path(os.environ["EPG_CACHE"])
-    if os.name == "nt" and os.environ.get("LOCALAPPDATA"):
-        return Path(os.environ["LOCALAPPDATA"]) / "epg"
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "epg"
+    from epg.generator.system import here
+
+    return here.caches() / "epg"
 
 
 def cache_problem(folder: Path) -> str:
     """The reason why EPG must not use the cache in ``folder``; empty if only the user can change its files.
 
     EPG runs programs of its cache, so other users must not be able to change them.  A folder that does not exist yet
-    is not a problem: EPG makes it with access for its owner only.  On Windows a folder of the user is always private.
+    is not a problem: EPG makes it with access for its owner only.
     """
-    if os.name == "nt":
-        return ""
-    try:
-        status = folder.stat()
-    except OSError:
-        return ""  # The function that uses the folder reports the problem.
-    own = {0, os.geteuid()}
-    if os.geteuid() == 0 and os.environ.get("SUDO_UID", "").isdecimal():
-        own.add(int(os.environ["SUDO_UID"][:10]))
-    if status.st_uid not in own:
-        return f"it belongs to another user (number {status.st_uid})"
-    if status.st_mode & 0o002 or (status.st_mode & 0o020 and not _is_own_group(status.st_gid)):
-        return f"other users can write into it (mode {status.st_mode & 0o7777:o})"
-    return ""
+    from epg.generator.system import here
 
-
-def _is_own_group(group: int) -> bool:
-    """True if the user is the only member of a group.
-
-    Many systems make such a group for each user, and by default they allow it to write into the user's folders.
-    """
-    import grp
-    import pwd
-
-    try:
-        user, found = pwd.getpwuid(os.geteuid()), grp.getgrgid(group)
-    except KeyError:
-        return False
-    return user.pw_gid == group and found.gr_name == user.pw_name and set(found.gr_mem) <= {user.pw_name}
+    return here.access_problem(folder)
 
 
 def check_cache() -> None:

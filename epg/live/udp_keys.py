@@ -14,14 +14,14 @@ import re
 from pathlib import Path, PurePath
 from urllib.parse import quote
 
+from epg.generator.system import here
 from epg.live.port import PortError
 from epg.live.udp_seal import KEY
 
 
 def folder() -> Path:
     """``~/.config/epg/keys``, or what the system says in its place."""
-    base = os.environ.get("APPDATA") if os.name == "nt" else os.environ.get("XDG_CONFIG_HOME")
-    return (Path(base) if base else Path.home() / ".config") / "epg" / "keys"
+    return here.settings() / "epg" / "keys"
 
 
 def read_key(text: str) -> bytes:

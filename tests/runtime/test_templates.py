@@ -34,7 +34,7 @@ from .program import (
 TARGETS = ROOT / "targets"
 HOST = TARGETS / "platforms" / "host"
 HARNESS = SOURCES / "templates.c"
-PORT = ("port", "clock", "monotonic", "elsewhere/system", "serial", "store")
+PORT = ("port", "clock", "posix/monotonic", "elsewhere/system", "serial", "store", "posix/file")
 PWM = {"prescaler": 1, "top": 6249}
 
 

@@ -15,8 +15,6 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import shlex
-import subprocess
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict
@@ -28,6 +26,7 @@ from epg.connect.projects import Job
 from epg.generator.bootstrap import cache_folder
 from epg.generator.check.configuration import Configuration
 from epg.generator.dataclass import dataclass
+from epg.generator.system import here
 
 FILE = "agreed-builds"
 """A file in EPG's cache, with one line for each :attr:`Question.key` that the user has agreed to."""
@@ -122,4 +121,4 @@ def _lines(file: Path) -> list[str]:
 
 
 def _shown(command: tuple[str, ...]) -> str:
-    return subprocess.list2cmdline(command) if os.name == "nt" else shlex.join(command)
+    return here.quoted(command)

@@ -8,7 +8,6 @@
 from __future__ import annotations
 
 import os
-import sys
 from pathlib import Path
 from typing import ClassVar
 
@@ -18,14 +17,6 @@ from epg.connect.build.build_messages import BuildMessage
 LONGEST = 86400
 """The longest time in seconds that a program runs: a program that is no ROS 2 node needs a duration."""
 _TAIL = 5
-_UNTIL_PARENT_ENDS = (
-    "import ctypes, os, signal, sys\n"
-    "ctypes.CDLL(None).prctl(1, signal.SIGTERM)\n"  # PR_SET_PDEATHSIG of Linux, which outlasts exec
-    "if os.getppid() == int(sys.argv[1]):\n"
-    "    try: os.execv(sys.argv[2], sys.argv[2:])\n"
-    "    except OSError as error: sys.exit(error.strerror)\n"
-)
-"""A script that becomes a program, which Linux ends with its parent: also after SIGKILL, which nothing can handle."""
 
 
 class ProgramRun(Activity):
@@ -41,7 +32,7 @@ class ProgramRun(Activity):
         self.begin(lambda: self._run(program, port))
 
     def _run(self, program: Path, port: Path | None) -> Outcome:
-        status = self.run("run", _until_parent_ends(command_of(program, port)), program.parent, os.environ)
+        status = self.run("run", command_of(program, port), program.parent, os.environ, bound=True)
         if self.is_cancelled:
             return Outcome("cancelled")
         if status == 0:
@@ -55,16 +46,6 @@ def command_of(program: Path, port: Path | None) -> tuple[str, ...]:
     """The command that runs ``program`` in real time.  It gives no setpoint, and does not enable the target."""
     console = () if port is None else (f"--console-pty={port}",)
     return (str(program), *console, "--realtime", f"--duration={LONGEST}")
-
-
-def _until_parent_ends(command: tuple[str, ...]) -> tuple[str, ...]:
-    """The command that does the same, and is ended by SIGTERM when the thread that has started it ends.
-
-    Only Linux can do this.
-    """
-    if sys.platform != "linux":
-        return command
-    return (sys.executable, "-I", "-S", "-c", _UNTIL_PARENT_ENDS, str(os.getpid()), *command)
 
 
 def port_of(program: Path) -> Path:

@@ -6,13 +6,13 @@ Rules for ROS names: https://design.ros2.org/articles/topic_and_service_names.ht
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Callable
 
 from epg.generator.correction import correction
 from epg.generator.diagnostics import underscored
 from epg.generator.documents.source_file import RESERVED
+from epg.generator.system import here
 
 STANDARD_HEADERS = frozenset(
     """assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic
@@ -46,7 +46,6 @@ STANDARD_TYPES = frozenset(
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,62}")
 _ROS_TOKEN = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _NOT_IN_CMAKE = re.compile(r"\||\$[({]|\$(ENV|CACHE)\{|\]=*\]")
-_NOT_IN_PROJECTS = "[#<>?]" if os.name == "nt" else r'[#<>?:;"\\]'
 
 
 def identifier_problem(name: str) -> str | None:
@@ -185,7 +184,7 @@ def project_folder_problem(path: str) -> str | None:
     backslash, the files that CMake writes for Make fail with ``?``, and its custom targets fail with ``#``, ``<`` and
     ``>``.
     """
-    found = re.search(_NOT_IN_PROJECTS, path)
+    found = re.search(here.NOT_IN_PROJECTS, path)
     return f"CMake cannot build a project with '{found[0]}' in its path" if found else cmake_path_problem(path)
 
 

@@ -14,21 +14,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from epg.generator.system import here
+
 
 def temporary_beside(path: Path) -> Path:
     """A unique path in the same folder, for contents that are renamed to ``path`` when they are complete."""
     return path.with_name(f".{path.name}.{os.urandom(6).hex()}")
-
-
-def lock(file: int) -> None:
-    """Locks a file until it is closed or the process ends.  Raises OSError if another process has locked it.
-
-    Does nothing on Windows, which refuses to remove an open file.
-    """
-    if os.name != "nt":
-        import fcntl
-
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def replace_file(path: Path, data: bytes, mode: int | None = None, *, durable: bool = False) -> None:
@@ -40,7 +31,7 @@ def replace_file(path: Path, data: bytes, mode: int | None = None, *, durable: b
     temporary = temporary_beside(path)
     try:
         with temporary.open("xb") as file:
-            lock(file.fileno())
+            here.lock(file.fileno())
             file.write(data)
             if durable:
                 file.flush()
@@ -56,15 +47,8 @@ def replace_file(path: Path, data: bytes, mode: int | None = None, *, durable: b
 def held_folder(path: Path) -> Iterator[None]:
     """Creates the folder ``path`` and locks it, so that no other run removes it as the rest of a killed run."""
     path.mkdir()
-    if os.name == "nt":
+    with here.held(path):
         yield
-        return
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        lock(handle)
-        yield
-    finally:
-        os.close(handle)
 
 
 def remove_leftovers(path: Path) -> None:
@@ -80,12 +64,8 @@ def remove_leftovers(path: Path) -> None:
 def _remove_unless_held(entry: os.DirEntry[str]) -> None:
     """Removes a temporary file or folder, unless a running process has locked it."""
     with suppress(OSError):  # it is in use: Windows refuses to remove it, other systems refuse the lock
-        if os.name != "nt":
-            handle = os.open(entry.path, os.O_RDONLY)
-            try:
-                lock(handle)
-            finally:
-                os.close(handle)
+        with here.held(Path(entry.path)):
+            pass
         if entry.is_dir(follow_symlinks=False):
             shutil.rmtree(entry.path, ignore_errors=True)
         elif entry.is_file(follow_symlinks=False):

@@ -17,7 +17,6 @@ from __future__ import annotations
 
 import os
 import re
-import stat
 from collections.abc import Iterable, Sequence
 from functools import cached_property
 from pathlib import Path
@@ -27,6 +26,7 @@ from epg.generator.documents.source_file import SourceFile, decode
 from epg.generator.documents.text_file import is_file
 from epg.generator.models.folders import may_hold_sources
 from epg.generator.source import Span
+from epg.generator.system import here
 
 MAX_ENTRIES = 1000  # entries of a folder that is searched
 MAX_FOLDERS = 100  # folders beside a model's
@@ -224,7 +224,7 @@ def _siblings(parent: Path) -> tuple[list[Path], str]:
         return [], "the folder above cannot be read"
     if whole == home or whole in home.parents:
         return [], "the folder above is a home folder or a system folder"
-    if os.name == "posix" and mode & stat.S_IWOTH:
+    if here.all_may_write(mode):
         return [], "all users can write to the folder above"
     entries = entries_of(parent)
     if entries is None:

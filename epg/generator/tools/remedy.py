@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shutil
 from collections.abc import Mapping
 
+from epg.generator.system import here
 from epg.generator.tools.find_tool import Finding, Surroundings, find_tool
 from epg.generator.tools.tools import Tool
 
@@ -66,5 +66,4 @@ def package_manager() -> str:
 
 def privileged(manager: str) -> str:
     """The prefix with which a command of this package manager runs as the administrator: "sudo " or ""."""
-    root = hasattr(os, "geteuid") and os.geteuid() == 0
-    return "" if root or manager in ("brew", "winget") else "sudo "
+    return "" if here.is_administrator() or manager in ("brew", "winget") else "sudo "

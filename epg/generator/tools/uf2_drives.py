@@ -8,15 +8,13 @@ from __future__ import annotations
 
 import os
 import re
-import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
 
 from epg.generator.dataclass import dataclass
+from epg.generator.system import here
 
-MOUNTS = Path("/proc/self/mounts")
-"""The file in which Linux lists the folders of all drives."""
 INFO = "INFO_UF2.TXT"
 PATIENCE = 10.0
 """The longest time in seconds in which a board must restart after the last block of a file."""
@@ -32,9 +30,9 @@ class Uf2Drive:
 
 
 def uf2_drives() -> list[Uf2Drive]:
-    """The drives that are mounted now, by Linux or macOS."""
+    """The drives that are there now."""
     found = []
-    for folder in _folders():
+    for folder in here.drives():
         try:
             text = (folder / INFO).read_text(encoding="ascii", errors="replace")
         except OSError:
@@ -43,19 +41,6 @@ def uf2_drives() -> list[Uf2Drive]:
         if board is not None:
             found.append(Uf2Drive(folder, board[1]))
     return found
-
-
-def _folders() -> list[Path]:
-    if sys.platform == "darwin":
-        return sorted(Path("/Volumes").glob("*"))
-    try:
-        lines = MOUNTS.read_text(encoding="utf-8", errors="surrogateescape").splitlines()
-    except OSError:
-        return []
-    # proc_pid_mounts(5): blanks and other characters of a name are octal numbers
-    entries = [line.split(" ") for line in lines]
-    names = [fields[1] for fields in entries if len(fields) > 2 and fields[2] in ("vfat", "msdos")]
-    return [Path(re.sub(r"\\([0-7]{3})", lambda octal: chr(int(octal[1], 8)), name)) for name in names]
 
 
 def copy_to_drive(file: Path, drive: Uf2Drive, progress: Callable[[int, int], None]) -> str:

@@ -7,11 +7,11 @@ function(_epg_host_library)
     return()
   endif()
   set(folder "${CMAKE_CURRENT_FUNCTION_LIST_DIR}")
-  set(systems realtime linux) # real time, consoles and agents
+  set(systems posix realtime linux) # real time, consoles and agents
   if(WIN32)
     set(systems realtime windows)
   elseif(NOT CMAKE_SYSTEM_NAME STREQUAL "Linux")
-    set(systems elsewhere)
+    set(systems posix elsewhere)
   endif()
   list(TRANSFORM systems PREPEND "${folder}/src/*/" OUTPUT_VARIABLE parts)
   list(TRANSFORM parts APPEND "/*.c" OUTPUT_VARIABLE patterns)

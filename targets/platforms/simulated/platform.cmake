@@ -54,7 +54,7 @@ function(_epg_simulated_target name)
     _epg_simulated_library(${library})
   endforeach()
   _epg_simulated_module(${name}_unit ${name}
-    "${here}/src/unit.c" "${host}/port/clock.c" "${host}/port/monotonic.c"
+    "${here}/src/unit.c" "${host}/port/clock.c" "${host}/port/posix/monotonic.c"
     "${host}/port/elsewhere/system.c" "${host}/port/port.c") # all time is simulated
   target_compile_definitions(${name}_unit PRIVATE EPG_UNIT_HOST=${name}_host EPG_UNIT_PLANT=${name}_unit_plant)
   if(TARGET ${name}_plant)

@@ -52,7 +52,7 @@ def platform_sources(*, main: bool = True, system: str = "linux") -> list[Path]:
     """All sources of the runtime and the host platform, as the build system would compile them."""
     parts = ("control", "communication", "model")
     folders = [RUNTIME / "src" / part for part in parts]
-    systems = ["elsewhere"] if system == "elsewhere" else ["realtime", system]
+    systems = {"linux": ["posix", "realtime"], "windows": ["realtime"], "elsewhere": ["posix"]}[system] + [system]
     folders += [*sorted((HOST / "src").iterdir())]
     folders += [folder for name in systems for folder in sorted((HOST / "src").glob(f"*/{name}"))]
     sources = [source for folder in folders for source in sorted(folder.glob("*.c"))] + SCAN

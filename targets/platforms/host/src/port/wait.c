@@ -5,18 +5,11 @@
  */
 #include "epg/port_wait.h"
 
-#include <time.h>
+#include "clock.h"
 
-#if defined(_WIN32)
-#include <windows.h>
-#endif
+enum { NAP_NS = 100000 };
 
 void epg_port_wait_for_bytes(void)
 {
-#if defined(_WIN32)
-    Sleep(1);
-#else
-    static const struct timespec NAP = {.tv_nsec = 100000};
-    (void)nanosleep(&NAP, NULL);
-#endif
+    epg_host_sleep_until(epg_host_monotonic_ns() + NAP_NS);
 }

@@ -3,14 +3,9 @@
  * @file
  * Body of main() of a host executable.
  */
-#if !defined(_WIN32)
-#define _POSIX_C_SOURCE 200809L
-#endif
-
 #include "epg/host.h"
 
 #include <fenv.h>
-#include <signal.h>
 
 #include "epg/host_log.h"
 #include "files/files.h"
@@ -20,6 +15,7 @@
 #include "loop/run.h"
 #include "options.h"
 #include "port/serial.h"
+#include "port/signals.h"
 #include "port/store.h"
 #include "report.h"
 #include "ros/ros.h"
@@ -35,17 +31,7 @@ static void on_interrupt(int number)
 static void catch_interrupts(void)
 {
     epg_host_interrupted = 0;
-    signal(SIGINT, on_interrupt);
-    signal(SIGTERM, on_interrupt);
-#if !defined(_WIN32)
-    /* The system and the shell each send a SIGHUP, so the handler must stay.  `nohup` has it ignored. */
-    struct sigaction hangup;
-    if (sigaction(SIGHUP, NULL, &hangup) == 0 && hangup.sa_handler != SIG_IGN) {
-        hangup.sa_handler = on_interrupt;
-        hangup.sa_flags = 0;
-        (void)sigaction(SIGHUP, &hangup, NULL);
-    }
-#endif
+    epg_host_signals_catch(on_interrupt);
 }
 
 /** True if the run ends like that of any ROS 2 node: Ctrl-C is its regular end, which a launch file must not report. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Sleep and random numbers of Windows.
+ * Clock, sleep and random numbers of Windows.
  */
 #define _CRT_RAND_S /* rand_s() */
 
@@ -17,6 +17,18 @@
 #if !defined(CREATE_WAITABLE_TIMER_HIGH_RESOLUTION) /* headers of mingw-w64 10 do not have it */
 #define CREATE_WAITABLE_TIMER_HIGH_RESOLUTION 0x00000002
 #endif
+
+uint64_t epg_host_monotonic_ns(void)
+{
+    LARGE_INTEGER frequency;
+    LARGE_INTEGER count;
+    QueryPerformanceFrequency(&frequency);
+    QueryPerformanceCounter(&count);
+    /* Whole seconds and the rest apart: count * 10^9 would overflow within minutes. */
+    const uint64_t ticks = (uint64_t)count.QuadPart;
+    const uint64_t per_second = (uint64_t)frequency.QuadPart;
+    return ticks / per_second * 1000000000U + ticks % per_second * 1000000000U / per_second;
+}
 
 /**
  * A timer whose resolution is about 0.5 ms.  Before version 1803, Windows has no such timers: then the whole computer's
