@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Prints the size of the project beside the limits of ``limits.yaml``: ``python -m tests.size``."""
 
-from tests.size.measure import LIMITS, files, functions, rooms, words
+from tests.size.measure import LIMITS, files, files_alone, functions, real_time, rooms, words
 
 names = files()
 found = list(functions(names))
@@ -17,3 +17,7 @@ for room, lines in sorted(counted.items()):
     print(f"{room:<28}{lines:>8}{LIMITS['rooms'].get(room, 0):>8}")
 print(f"{'together':<28}{sum(counted.values()):>8}{sum(LIMITS['rooms'].values()):>8}")
 print(f"{'words of the pages':<28}{words(names):>8}{LIMITS['words']:>8}")
+for kind, limit in LIMITS["real_time"].items():
+    places = real_time(names, kind)
+    print(f"{kind + ' in tests':<28}{sum(places.values()):>8}{limit['most']:>8}")
+print(f"{'files alone':<28}{files_alone():>8}{LIMITS['files_alone']:>8}")

@@ -5,6 +5,10 @@ A *room* is a folder of the first, second or (in the generator) third level, suc
 ``docs``.  Its lines are all lines of its text files.  Exports in ``examples``, libraries of others, locks, generated
 schemas and expected outputs do not count.  The complexity of a function is McCabe's, as lizard counts it for Python, C
 and JavaScript.
+
+A test judges times of the target, or of a simulation.  So the places in sources of tests that read a clock of this
+computer, or that sleep, are counted, too: by their text, also in the tests' helpers and doubles.  A call of ``until()``
+of ``tests/waiting.py`` is not counted: its patience is that for a slow computer, and a test does not judge it.
 """
 
 from __future__ import annotations
@@ -79,3 +83,16 @@ def rooms(names: Iterable[str]) -> Counter[str]:
 def words(names: Iterable[str]) -> int:
     """The words of all pages."""
     return sum(len((ROOT / name).read_text(encoding="utf-8").split()) for name in names if name.endswith(".md"))
+
+
+def real_time(names: Iterable[str], kind: str, root: Path = ROOT) -> Counter[str]:
+    """The places in sources of tests that read a clock of this computer (``clocks``) or sleep (``sleeps``), by file."""
+    pattern = re.compile(LIMITS["real_time"][kind]["pattern"])
+    folders = ((name, name.split("/")[:3]) for name in names if Path(name).suffix in LANGUAGES)
+    sources = [name for name, above in folders if "tests" in above and "size" not in above]
+    return Counter({name: len(pattern.findall((root / name).read_text(encoding="utf-8"))) for name in sources})
+
+
+def files_alone() -> int:
+    """The test files beside which no other test runs."""
+    return len(re.findall(r"^alone ", (ROOT / "tests/tiers.txt").read_text(encoding="utf-8"), re.MULTILINE))

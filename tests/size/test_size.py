@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The limits of ``limits.yaml``: complexity and length of functions, lines of files and rooms, words of the pages."""
+"""The limits of ``limits.yaml``: functions, lines of files and rooms, words of the pages, tests in real time."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.size.measure import LIMITS, ROOT, Function, files, functions, rooms, words
+from tests.size.measure import LIMITS, ROOT, Function, files, files_alone, functions, real_time, rooms, words
 
 
 @pytest.fixture(scope="module")
@@ -64,3 +64,24 @@ def test_rooms_keep_to_their_budgets() -> None:
 
 def test_the_pages_are_short() -> None:
     assert words(files()) <= LIMITS["words"]
+
+
+@pytest.mark.parametrize("kind", LIMITS["real_time"])
+def test_few_tests_run_in_real_time(kind: str) -> None:
+    """A limit is at most 5 above its number: what was mended does not come back."""
+    places = real_time(files(), kind)
+    most = LIMITS["real_time"][kind]["most"]
+    assert most - 5 <= sum(places.values()) <= most, [(n, f) for f, n in places.most_common() if n]
+
+
+def test_few_files_run_alone() -> None:
+    assert files_alone() == LIMITS["files_alone"]
+
+
+def test_a_place_in_real_time_is_found(tmp_path: Path) -> None:
+    (tmp_path / "tests").mkdir()
+    (tmp_path / "tests/a.py").write_text("begin = time.monotonic()\ntime.sleep(1)\nuntil(lambda: done)\n")
+    (tmp_path / "tests/a.c").write_text("clock_gettime(CLOCK_MONOTONIC, &now);\nnanosleep(&delay, NULL);\n")
+    (tmp_path / "tests/a.mjs").write_text("await new Promise((go) => setTimeout(go, 9));\nperformance.now();\n")
+    names = ["tests/a.c", "tests/a.mjs", "tests/a.py"]
+    assert [real_time(names, kind, tmp_path) for kind in ("clocks", "sleeps")] == [dict.fromkeys(names, 1)] * 2
