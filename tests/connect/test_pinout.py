@@ -13,7 +13,7 @@ import pytest
 
 from epg.connect.body import Refused
 from epg.connect.session import Session
-from tests.connect.conftest import ROOT
+from tests.checkout import ROOT
 from tests.connect.page import session_of
 
 TCF = "version: 1\nextends: {}.tcf\n"

@@ -26,7 +26,9 @@ from tests.checkout import ROOT, listed
 
 LIMITS = yaml.safe_load((Path(__file__).parent / "limits.yaml").read_text(encoding="utf-8"))
 LANGUAGES = {".py": "python", ".c": "c", ".h": "c", ".cpp": "c", ".js": "javascript", ".mjs": "javascript"}
-_NOT_COUNTED = re.compile(r"(^|/)(examples|vendor|lock|golden)/|^tests/zephyr/generate/|package-lock\.json$|\.(case|svg|png)$")
+_NOT_COUNTED = re.compile(
+    r"(^|/)(examples|vendor|lock|golden)/|^tests/zephyr/generate/|package-lock\.json$|\.(case|svg|png)$"
+)
 
 
 @dataclass(frozen=True)

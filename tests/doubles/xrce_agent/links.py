@@ -118,17 +118,13 @@ class UdpLink:
                 self._socket.sendto(data, peer)  # type: ignore[call-overload]
 
 
-class PtyLink:
-    """A pseudo terminal whose other end has a path: ``--serial-device <path>``.  While it is closed, there is no path.
-
-    Peers are addresses on the line; there is only one.
-    """
+class SerialLink:
+    """The common part of serial lines.  Peers are addresses on the line; there is only one."""
 
     checked = True
 
-    def __init__(self, path: Path) -> None:
-        self.path = path
-        self._file = self._other = -1
+    def __init__(self) -> None:
+        self._file = -1
         self._deframer = Deframer()
 
     @property
@@ -136,31 +132,8 @@ class PtyLink:
         """Number of frames that were not valid."""
         return self._deframer.broken
 
-    @property
-    def address(self) -> str:
-        return str(self.path)
-
     def fileno(self) -> int:
         return self._file
-
-    def open(self) -> None:
-        if self._file >= 0:
-            return
-        self._file, self._other = os.openpty()
-        tty.setraw(self._other)
-        os.set_blocking(self._file, False)
-        self.path.unlink(missing_ok=True)
-        self.path.symlink_to(os.ttyname(self._other))
-
-    def close(self) -> None:
-        """Closes the terminal, like a pulled cable: the board's end hangs up."""
-        if self._other >= 0:
-            os.close(self._other)
-            self.path.unlink(missing_ok=True)
-        if self._file >= 0:
-            os.close(self._file)
-        self._file = self._other = -1
-        self._deframer = Deframer()
 
     def receive(self) -> list[tuple[Hashable, bytes]]:
         try:
@@ -182,3 +155,39 @@ class PtyLink:
         with contextlib.suppress(OSError):
             if self._file >= 0:
                 os.write(self._file, data)
+
+    def close(self) -> None:
+        if self._file >= 0:
+            os.close(self._file)
+            self._file = -1
+        self._deframer = Deframer()
+
+
+class PtyLink(SerialLink):
+    """A pseudo terminal whose other end has a path, ``--serial-device <path>``, while it is open."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self.path = path
+        self._other = -1
+
+    @property
+    def address(self) -> str:
+        return str(self.path)
+
+    def open(self) -> None:
+        if self._file >= 0:
+            return
+        self._file, self._other = os.openpty()
+        tty.setraw(self._other)
+        os.set_blocking(self._file, False)
+        self.path.unlink(missing_ok=True)
+        self.path.symlink_to(os.ttyname(self._other))
+
+    def close(self) -> None:
+        """Closes the terminal, like a pulled cable: the board's end hangs up."""
+        if self._other >= 0:
+            os.close(self._other)
+            self._other = -1
+            self.path.unlink(missing_ok=True)
+        super().close()

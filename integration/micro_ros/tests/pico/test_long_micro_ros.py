@@ -8,11 +8,15 @@ import random
 import pytest
 
 from integration.micro_ros.tests.pico.firmware import MicroRosJiwy, firmware, library
+from tests.doubles.rp2040.build import build
+from tests.doubles.rp2040.emulator import Emulator
 from tests.doubles.toolchain import binutils
+from tests.doubles.xrce_agent.messages import float64, read_float64
+from tests.platforms.pico.closed_loop.robot import AXES, angle, connect
 from tests.platforms.pico.images import skip_unless_emulated
 from tests.platforms.pico.stacks.workload import COMMANDS
 from tests.platforms.pico.test_faults import START, STOP, order
-from tests.platforms.pico.uart.test_node import check_serial_line, node_image
+from tests.platforms.pico.xrce.agent import BoardAgent, UartLink
 from tests.platforms.pico.xrce.board import CONSOLE_PORT
 from tests.platforms.pico.xrce.scenarios import SCENARIOS, assert_is_back, hold, restart
 
@@ -39,8 +43,36 @@ def test_restarts() -> None:
 
 
 def test_a_serial_line() -> None:
+    """JIWY holds a position that arrived over the line, and connects again to an agent that was away."""
     skip_unless_emulated("freertos")
-    check_serial_line(node_image("freertos", MIDDLEWARE="micro_ros", MICRO_ROS_PATH=library()))
+    settings = {"PLATFORM": "freertos", "MIDDLEWARE": "micro_ros", "MICRO_ROS_PATH": library()}
+    folder = build("tests/platforms/pico/uart/project", targets=["node_firmware"], variables=settings)
+    with Emulator(folder / "node_firmware.elf", usb={"seed": 3}) as pico:
+        connect(pico, {"pan": 0.12, "tilt": 0.12})
+        pico.run(milliseconds=50)
+        with BoardAgent(pico, UartLink(pico, uart=0, baud=460800)) as agent:
+            agent.wait_for("rt/pan_publisher")
+            agent.run(900)  # both axes have homed from 0.12 rad
+            for _ in range(2):
+                agent.topics.publish("rt/pan_subscriber", float64(0.5), reliable=False)
+                agent.run(500)
+                assert angle(pico, "pan") == pytest.approx(0.5, abs=3 * AXES[0].rad_per_count)
+                newest = read_float64(agent.heard("rt/pan_publisher")[-1].data)
+                assert newest == pytest.approx(0.5, abs=3 * AXES[0].rad_per_count)
+                agent.kill()  # a wire does not report this: the board must detect it itself
+                agent.run(1500)
+                agent.start()
+                agent.wait_for("rt/pan_publisher", milliseconds=3000)
+            pico.receive()
+            pico.send("stats\n")
+            agent.run(50)
+            said = pico.receive()
+            assert "stat reconnects=2\r\n" in said
+            assert "stat overruns=0\r\n" in said
+            assert "stat missed=0\r\n" in said
+            assert len(pico.call("usb")["ports"]) == 1, "the console has the only serial port on USB"
+            assert agent.serial.broken == 0
+        assert pico.call("faults") == []
 
 
 def test_it_is_stopped_and_started_wherever_it_waits() -> None:
