@@ -9,26 +9,18 @@ Source: RM0410 (RCC, PWR, "Embedded flash memory", DMA); DS11532 (limits of cloc
 
 from __future__ import annotations
 
-import struct
 from dataclasses import replace
 from typing import Any
 
 from .clocks import AHB_DIVIDERS, BDCR, CSR, LSI, Clocks
-from .dma import Block, Dma, Unreachable
+from .dma import Dma, Unreachable
 from .flash import KEYS, Flash, Operation
-from .flash import Block as FlashBlock
 from .flash import Surroundings as FlashSurroundings
-from .gpio import MODER, Port
-from .machine import FLASH, FLASH_SIZE, SYSTEM, Machine
-from .rng import Rng
-from .timers import KINDS, Timer
-from .uart import KINDS as UART_KINDS
-from .uart import Uart
-from .usb import ENDPOINTS as USB_ENDPOINTS
-from .usb import FIFOS, Usb
-from .watchdog import Backup, Watchdog
+from .gpio import MODER
+from .machine import FLASH, Machine
+from .timers import KINDS
 
-RCC, PWR, FLASH_REGISTERS, GPIO, PORTS = 0x40023800, 0x40007000, 0x40023C00, 0x40020000, "ABCDEFGHIJK"
+RCC, PWR, FLASH_REGISTERS, GPIO = 0x40023800, 0x40007000, 0x40023C00, 0x40020000
 IWDG, RTC, DMA_BASES = 0x40003000, 0x40002800, (0x40026000, 0x40026400)
 USB, USB_INTERRUPT, AHB2ENR, OTGFSEN = 0x50000000, 67, 0x34, 7
 RNG, RNGEN = 0x50060800, 6
@@ -42,7 +34,7 @@ TRIGGERS = {
 """Where the inputs of a timer are others than on the STM32H743."""
 
 CR, PLLCFGR, CFGR, AHB1ENR, APB1ENR, APB2ENR, DCKCFGR1, DCKCFGR2 = 0x00, 0x04, 0x08, 0x30, 0x40, 0x44, 0x8C, 0x90
-PWR_CR1, PWR_CSR1, PWREN, RTCEN, DBP = 0x00, 0x04, 28, 10, 1 << 8
+PWR_CR1, PWR_CSR1, PWREN, RTCEN = 0x00, 0x04, 28, 10
 HSI = 16_000_000
 AT_RESET = {CR: 0x83, PLLCFGR: 0x24003010, AHB1ENR: 0x00100000, APB1ENR: 0x400}
 RMVF, FLAGS, WATCHDOG_FLAG, POWER_FLAGS = 1 << 24, 0xFE000000, 1 << 29, 0x0E000000
@@ -273,26 +265,15 @@ class DmaOfF767(Dma):
 
 
 class Stm32f767(Machine):
-    clocks_of_chip, flash_of_chip = ClocksOfF767, FlashOfF767
+    clocks_of_chip, flash_of_chip, dma_of_chip = ClocksOfF767, FlashOfF767, DmaOfF767
+    timers_of_chip = tuple(name for name in KINDS if name not in ("TIM15", "TIM16", "TIM17"))
     cached, volatile, kept = (CACHED_RAM,), (ITCM, RAM), ()
+    store, unique_id, flash_kilobytes = STORE, UNIQUE_ID, FLASH_KILOBYTES
+    gpio, dma_bases, flash_registers = GPIO, DMA_BASES, FLASH_REGISTERS
+    watchdog_base, backup_base, rng_base, usb_base = IWDG, RTC, RNG, USB
+    backup_clock, rng_clock = (APB1ENR, RTCEN), (AHB2ENR, RNGEN)
     clocks: ClocksOfF767
     flash: FlashOfF767
-
-    def _map(self, identity: bytes) -> None:
-        cpu = self.processor.cpu
-        for base, size in (*self.volatile, SYSTEM, (FLASH, STORE - FLASH)):
-            cpu.mem_map(base, size)
-        cpu.mem_write(FLASH, b"\xff" * (STORE - FLASH))
-        for address, data in self.image.segments:
-            cpu.mem_write(address, data)
-        flash = self.flash
-        cpu.mmio_map(
-            STORE, STORE_SIZE, lambda _, at, size, __: flash.read(at, size), None,
-            lambda _, at, size, value, __: flash.write(at, size, value), None,
-        )  # fmt: skip
-        cpu.mem_write(UNIQUE_ID, identity)
-        cpu.mem_write(FLASH_KILOBYTES, struct.pack("<H", FLASH_SIZE // 1024))
-        self._map_registers()
 
     def watch_flash(self) -> None:
         """From now on, ``flash.reads`` has what is read of the program during an operation.  This is slow."""
@@ -308,35 +289,11 @@ class Stm32f767(Machine):
         cpu.hook_add(module.UC_HOOK_CODE, look, None, FLASH, STORE - 1)
         cpu.hook_add(module.UC_HOOK_MEM_READ, look_at_data, None, FLASH, STORE - 1)
 
-    def _build(self) -> None:
-        self._blocks = {}
-        self.timers = {name: Timer(name, self) for name in KINDS if name not in ("TIM15", "TIM16", "TIM17")}
+    def _build_others(self) -> None:
         for name, timer in self.timers.items():
             timer.kind = replace(timer.kind, triggers=TRIGGERS.get(name, timer.kind.triggers))
-            self._place(timer.kind.base, timer)
-        self.uarts = {number: Uart(number, self) for number in UART_KINDS}
-        for uart in self.uarts.values():
-            self._place(uart.kind.base, uart)
-        self.ports = {name: Port(name, self._pin_changed(name)) for name in PORTS}
-        for number, port in enumerate(self.ports.values()):
-            self._place(GPIO + 0x400 * number, port)
-        self.dma = DmaOfF767(self)
-        self.controllers = [Block(self.dma, number) for number in range(2)]
-        for base, controller in zip(DMA_BASES, self.controllers):
-            self._place(base, controller)
-        self._place(FLASH_REGISTERS, FlashBlock(self.flash))
-        self.watchdog = Watchdog(self)
         self.watchdog.frequency = LSI
-        self._place(IWDG, self.watchdog)
-        self.backup = Backup(
-            lambda: self.clocks.enabled(APB1ENR, RTCEN), lambda: bool(self.clocks.power[PWR_CR1] & DBP)
-        )
-        self._place(RTC, self.backup)
-        self.rng = Rng(lambda: self.clocks.enabled(AHB2ENR, RNGEN), lambda: self.clocks.random)
-        self._place(RNG, self.rng)
-        self.usb = Usb(self, self._usb_is_powered)
         self.usb.interrupt = USB_INTERRUPT
-        self._place(USB, self.usb, FIFOS + 0x1000 * USB_ENDPOINTS)
 
     def _usb_is_powered(self) -> bool:
         """48 MHz of the PLL, which DCKCFGR2 selects after a reset, and the pins have their function."""

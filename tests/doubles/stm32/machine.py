@@ -28,7 +28,7 @@ from .cache import Cache
 from .clocks import DBGMCU, PWR, RCC, SYSCFG, Clocks
 from .dma import BASES as DMA_BASES
 from .dma import MUX, Block, Dma, Multiplexer
-from .flash import BANK, BANK_SIZE, Flash
+from .flash import BANK, Flash
 from .flash import REGISTERS as FLASH_REGISTERS
 from .flash import Block as FlashBlock
 from .gpio import Port
@@ -76,10 +76,17 @@ class PowerCut(Exception):
 class Machine:
     """``crystal``: Hz at OSC_IN, from the ST-LINK of a Nucleo.  ``revision``: DBGMCU_IDCODE."""
 
-    clocks_of_chip, flash_of_chip = Clocks, Flash
+    clocks_of_chip, flash_of_chip, dma_of_chip = Clocks, Flash, Dma
+    timers_of_chip = tuple(timer_registers.KINDS)
     cached = (AXI, SRAM_D2, SRAM_D3)
     volatile, kept = (ITCM, DTCM, *cached), (BACKUP,)
     """RAM that loses its contents with the power, and with VBAT."""
+    store, unique_id, flash_kilobytes = BANK, UNIQUE_ID, FLASH_KILOBYTES
+    """Where the part of the flash that ``flash`` models begins, up to the end; and what the chip says about itself."""
+    gpio, dma_bases, flash_registers = GPIO, DMA_BASES, FLASH_REGISTERS
+    watchdog_base, backup_base, rng_base, usb_base = IWDG, RTC, RNG, USB_BASE
+    backup_clock = clock_registers.APB4ENR, clock_registers.RTCAPBEN
+    rng_clock = clock_registers.AHB2ENR, clock_registers.RNGEN
 
     def __init__(
         self,
@@ -118,18 +125,18 @@ class Machine:
 
     def _map(self, identity: bytes) -> None:
         cpu = self.processor.cpu
-        for base, size in (*self.volatile, *self.kept, SYSTEM, (FLASH, BANK - FLASH)):
+        for base, size in (*self.volatile, *self.kept, SYSTEM, (FLASH, self.store - FLASH)):
             cpu.mem_map(base, size)
-        cpu.mem_write(FLASH, b"\xff" * (BANK - FLASH))
+        cpu.mem_write(FLASH, b"\xff" * (self.store - FLASH))
         for address, data in self.image.segments:
-            self.flash.load(address, data) if address >= BANK else cpu.mem_write(address, data)
+            self.flash.load(address, data) if address >= self.store else cpu.mem_write(address, data)
         flash = self.flash
         cpu.mmio_map(
-            BANK, BANK_SIZE, lambda _, at, size, __: flash.read(at, size), None,
+            self.store, len(flash.contents), lambda _, at, size, __: flash.read(at, size), None,
             lambda _, at, size, value, __: flash.write(at, size, value), None,
         )  # fmt: skip
-        cpu.mem_write(UNIQUE_ID, identity)
-        cpu.mem_write(FLASH_KILOBYTES, struct.pack("<H", FLASH_SIZE // 1024))
+        cpu.mem_write(self.unique_id, identity)
+        cpu.mem_write(self.flash_kilobytes, struct.pack("<H", FLASH_SIZE // 1024))
         self._map_registers()
 
     def _map_registers(self) -> None:
@@ -143,7 +150,7 @@ class Machine:
     def _build(self) -> None:
         self._blocks: dict[int, tuple[int, Any]] = {}
         """The peripheral at each block of 1 KiB, and its base address."""
-        self.timers = {name: Timer(name, self) for name in timer_registers.KINDS}
+        self.timers = {name: Timer(name, self) for name in self.timers_of_chip}
         for timer in self.timers.values():
             self._place(timer.kind.base, timer)
         self.uarts = {number: Uart(number, self) for number in UART_KINDS}
@@ -151,27 +158,28 @@ class Machine:
             self._place(uart.kind.base, uart)
         self.ports = {name: Port(name, self._pin_changed(name)) for name in PORTS}
         for number, port in enumerate(self.ports.values()):
-            self._place(GPIO + 0x400 * number, port)
-
-        self.dma = Dma(self)
+            self._place(self.gpio + 0x400 * number, port)
+        self.dma = self.dma_of_chip(self)
         self.controllers = [Block(self.dma, number) for number in range(2)]
-        for base, controller in zip(DMA_BASES, self.controllers):
+        for base, controller in zip(self.dma_bases, self.controllers):
             self._place(base, controller)
-        self._place(MUX, Multiplexer(self.dma))
-        self._place(FLASH_REGISTERS, FlashBlock(self.flash))
+        self._place(self.flash_registers, FlashBlock(self.flash))
         self.watchdog = Watchdog(self)
-        self._place(IWDG, self.watchdog)
+        self._place(self.watchdog_base, self.watchdog)
         self.backup = BackupRegisters(
-            lambda: self.clocks.enabled(clock_registers.APB4ENR, clock_registers.RTCAPBEN),
+            lambda: self.clocks.enabled(*self.backup_clock),
             lambda: bool(self.clocks.power[clock_registers.PWR_CR1] & clock_registers.DBP),
         )
-        self._place(RTC, self.backup)
-        self.rng = Rng(
-            lambda: self.clocks.enabled(clock_registers.AHB2ENR, clock_registers.RNGEN), lambda: self.clocks.random
-        )
-        self._place(RNG, self.rng)
+        self._place(self.backup_base, self.backup)
+        self.rng = Rng(lambda: self.clocks.enabled(*self.rng_clock), lambda: self.clocks.random)
+        self._place(self.rng_base, self.rng)
         self.usb = Usb(self, self._usb_is_powered)
-        self._place(USB_BASE, self.usb, FIFOS + 0x1000 * USB_ENDPOINTS)
+        self._place(self.usb_base, self.usb, FIFOS + 0x1000 * USB_ENDPOINTS)
+        self._build_others()
+
+    def _build_others(self) -> None:
+        """What only this chip has."""
+        self._place(MUX, Multiplexer(self.dma))
 
     def _place(self, base: int, peripheral: Any, size: int = 0x400) -> None:
         for block in range(base >> 10, (base + size) >> 10):
