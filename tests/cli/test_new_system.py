@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import shutil
 from pathlib import Path
 
 import pytest
@@ -13,7 +12,7 @@ import pytest
 from epg.cli.main import main
 from epg.generator.diagnostics import Diagnostics
 from epg.simulate import load_scenario
-from tests.cmake.project import ROOT, snapshot
+from tests.cmake.project import copy_jiwy, snapshot
 
 SYSTEM = """version: 1
 system: robots
@@ -33,12 +32,9 @@ FILES = {".gitignore", "CMakeLists.txt", "CMakePresets.json", "README.md", "epg_
 
 @pytest.fixture
 def system(tmp_path: Path) -> Path:
-    jiwy = ROOT / "examples/jiwy"
-    for name in ("model", "plant"):
-        shutil.copytree(jiwy / name, tmp_path / "robots" / name)
-    for name in ("jiwy.bindings.yaml", "plant.bindings.yaml"):
-        shutil.copy(jiwy / name, tmp_path / "robots")
     path = tmp_path / "robots/robots.system.yaml"
+    path.parent.mkdir()
+    copy_jiwy(path.parent, "model", "plant")
     path.write_text(SYSTEM)
     return path
 

@@ -19,6 +19,14 @@ CMAKE_DIR = ROOT / "cmake"
 NINJA = shutil.which("ninja")
 
 
+def copy_jiwy(folder: Path, *parts: str) -> None:
+    """Copies parts of examples/jiwy with their bindings into ``folder``: "model", "plant"."""
+    for part in parts:
+        shutil.copytree(ROOT / "examples/jiwy" / part, folder / part)
+        bindings = {"model": "jiwy", "plant": "plant"}[part]
+        shutil.copy(ROOT / "examples/jiwy" / f"{bindings}.bindings.yaml", folder)
+
+
 @dataclass
 class Project:
     """A copy of ``projects/<name>`` with the folders beside it, and a build folder next to it."""

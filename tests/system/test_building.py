@@ -3,10 +3,9 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 
-from tests.cmake.project import ROOT, Project, compiled
+from tests.cmake.project import Project, compiled, copy_jiwy
 from tests.doubles.toolchain import skip_if_missing, tool
 
 SYSTEM = """version: 1
@@ -30,11 +29,7 @@ epg_add_system(others SYSTEM two.system.yaml TARGETS follower)
 
 def project_in(folder: Path) -> Project:
     project = Project(folder, "robots")
-    jiwy = ROOT / "examples/jiwy"
-    for name in ("model", "plant"):
-        shutil.copytree(jiwy / name, project.source / name)
-    for name in ("jiwy.bindings.yaml", "plant.bindings.yaml"):
-        shutil.copy(jiwy / name, project.source)
+    copy_jiwy(project.source, "model", "plant")
     for name, text in {
         "two.system.yaml": SYSTEM,
         "leader.tcf": TCF,

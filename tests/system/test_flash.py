@@ -11,7 +11,6 @@ import json
 import os
 import re
 import shlex
-import shutil
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,8 +26,8 @@ from epg.system import flash
 from epg.system.check_system import check_system
 from epg.system.images import images_of
 from epg.system.load_system import load_system
+from tests.cmake.project import ROOT, copy_jiwy
 
-ROOT = Path(__file__).resolve().parents[2]
 FIRST, SECOND = "E6614103E7452D2F", "E66118604B5A7C31"
 PROBE = "066AFF555054877567044634"
 SYSTEM = f"""version: 1
@@ -192,8 +191,7 @@ def usb(folder: Path, name: str, **facts: str) -> None:
 
 @pytest.fixture
 def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Bench:
-    shutil.copytree(ROOT / "examples/jiwy/model", tmp_path / "model")
-    shutil.copy(ROOT / "examples/jiwy/jiwy.bindings.yaml", tmp_path)
+    copy_jiwy(tmp_path, "model")
     tools = tmp_path / "tools"
     tools.mkdir()
     for name, text in (("picotool", PICOTOOL), ("openocd", OPENOCD)):

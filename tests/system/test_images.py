@@ -7,13 +7,12 @@
 from __future__ import annotations
 
 import re
-import shutil
 from pathlib import Path
 
 import pytest
 
 from epg.cli.main import main
-from tests.cmake.project import ROOT, Project
+from tests.cmake.project import ROOT, Project, copy_jiwy
 from tests.doubles.toolchain import arm_gcc, pico_sdk, skip_if_missing, tool
 from tests.zephyr.workspace import c_library, run, workspace
 
@@ -51,8 +50,7 @@ def project(tmp_path: Path) -> Project:
     needed = ("micro_xrce_dds_client", "micro_cdr", "cmsis_core", "cmsis_device_h7")
     skip_if_missing(arm_gcc, pico_sdk, *(lambda name=name: tool(name) for name in needed))
     made = Project(tmp_path, "two")
-    shutil.copytree(ROOT / "examples/jiwy/model", made.source / "model")
-    shutil.copy(ROOT / "examples/jiwy/jiwy.bindings.yaml", made.source)
+    copy_jiwy(made.source, "model")
     (made.source / "two.system.yaml").write_text(SYSTEM)
     (made.source / "CMakeLists.txt").write_text(LISTS)
     (made.source / "watcher").mkdir()

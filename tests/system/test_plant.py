@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 import subprocess
 from bisect import bisect_left, bisect_right
 from pathlib import Path
@@ -12,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from epg.simulate import simulate_system
-from tests.cmake.project import ROOT, Project
+from tests.cmake.project import ROOT, Project, copy_jiwy
 from tests.system.test_simulation import rows
 
 SPLIT = """version: 1
@@ -177,11 +176,7 @@ void carts_step(const carts_inputs_t *inputs, carts_outputs_t *outputs)
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Project:
     project = Project(tmp_path_factory.mktemp("plant"), "robots")
-    jiwy = ROOT / "examples/jiwy"
-    for name in ("model", "plant"):
-        shutil.copytree(jiwy / name, project.source / name)
-    for name in ("jiwy.bindings.yaml", "plant.bindings.yaml"):
-        shutil.copy(jiwy / name, project.source)
+    copy_jiwy(project.source, "model", "plant")
     for name, text in FILES.items():
         path = project.source / name
         path.parent.mkdir(exist_ok=True)

@@ -17,7 +17,7 @@ import pytest
 from epg.cli.main import main
 from epg.generator.diagnostics import UserError
 from epg.simulate import format_table, simulate, simulate_system
-from tests.cmake.project import ROOT, Project
+from tests.cmake.project import ROOT, Project, copy_jiwy
 
 SYSTEM = """version: 1
 system: robots
@@ -93,11 +93,7 @@ axes:
 
 def project_in(folder: Path) -> Project:
     project = Project(folder, "robots")
-    jiwy = ROOT / "examples/jiwy"
-    for name in ("model", "plant"):
-        shutil.copytree(jiwy / name, project.source / name)
-    for name in ("jiwy.bindings.yaml", "plant.bindings.yaml"):
-        shutil.copy(jiwy / name, project.source)
+    copy_jiwy(project.source, "model", "plant")
     shutil.copytree(ROOT / "examples/relbot", project.source / "relbot")
     (project.source / "robots.system.yaml").write_text(SYSTEM)
     (project.source / "follow.yaml").write_text(SCENARIO)
@@ -387,10 +383,7 @@ def block(page: str, name: str) -> str:
 
 def test_the_pages_system_and_scenario(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The file of the system is built by ``epg simulate``, and a mistake of the build is reported."""
-    for name in ("model", "plant"):
-        shutil.copytree(ROOT / "examples/jiwy" / name, tmp_path / name)
-    for name in ("jiwy.bindings.yaml", "plant.bindings.yaml"):
-        shutil.copy(ROOT / "examples/jiwy" / name, tmp_path)
+    copy_jiwy(tmp_path, "model", "plant")
     (tmp_path / "two_jiwys.system.yaml").write_text(block("systems.md", "two jiwys"))
     (tmp_path / "follow.yaml").write_text(block("simulation.md", "scenario of two jiwys"))
     command = ["simulate", str(tmp_path / "two_jiwys.system.yaml"), "--scenario", str(tmp_path / "follow.yaml")]
