@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 
 from epg.generator.diagnostics import Diagnostics
@@ -39,14 +39,12 @@ def new_project(folder: Path, target: str, model: Path = ROOT / "examples/jiwy/m
     return folder
 
 
-def axes_project(folder: Path, axes: Sequence[str], target: str = "rpi_pico2_bare_metal") -> Path:
-    """A new project for a controller of ``axes``, each with a setpoint, an encoder, a limit switch and a motor."""
-    angles = {f"{name}_{axis}": "{unit: rad}" for axis in axes for name in ("position", "setpoint")}
-    ends = {f"end_{axis}": "{}" for axis in axes}
-    duties = {
-        f"duty_{axis}": f"in->end_{axis} > 0.5 ? 0.0 : in->setpoint_{axis} - in->position_{axis}" for axis in axes
-    }
-    return new_project(folder / "robot", target, write_model(folder / "axes_model", "axes", angles | ends, duties))
+def own_axis_project(folder: Path) -> Path:
+    """A new project for a controller of an axis of one's own: a setpoint, an encoder, a limit switch and a motor."""
+    inputs = {"position_x": "{unit: rad}", "setpoint_x": "{unit: rad}", "end_x": "{}"}
+    control = {"duty_x": "in->end_x > 0.5 ? 0.0 : in->setpoint_x - in->position_x"}
+    model = write_model(folder / "axis_model", "axis", inputs, control)
+    return new_project(folder / "robot", "rpi_pico2_bare_metal", model)
 
 
 def one_axis_project(folder: Path, target: str) -> Path:

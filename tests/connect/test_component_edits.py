@@ -13,14 +13,14 @@ import pytest
 from epg.connect.body import Refused
 from epg.connect.session import Session
 from tests.connect.page import session_of
-from tests.connect.robots import axes_project, with_second_target
+from tests.connect.robots import own_axis_project, with_second_target
 
 ENCODER = {"kind": "quadrature_encoder", "name": "encoder", "values": {"counts_per_revolution": "4096"}}
 
 
 @pytest.fixture(scope="module")
 def axis_session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Session]:
-    session = session_of(axes_project(tmp_path_factory.mktemp("axis"), ("x",)))
+    session = session_of(own_axis_project(tmp_path_factory.mktemp("axis")))
     yield session
     session.ended.set()
 
@@ -88,7 +88,7 @@ def test_a_wrong_component_is_refused(axis: Session, body: dict[str, Any], messa
 
 
 def test_a_name_follows_everywhere(tmp_path: Path) -> None:
-    axis = session_of(axes_project(tmp_path, ("x",)))
+    axis = session_of(own_axis_project(tmp_path))
     axis.act("add", ENCODER)
     axis.act("add", {"kind": "pwm_h_bridge", "name": "motor", "values": {}})
     guard = {"actuator": "motor", "encoder": "encoder", "stall": "{}", "runaway.duty": "0.2"}
@@ -206,7 +206,7 @@ def test_a_value_without_a_field_is_refused(axis: Session) -> None:
 @pytest.fixture
 def shared(tmp_path: Path) -> Iterator[tuple[Session, Path]]:
     """A project with a second target, whose .tcf extends the first one's."""
-    folder = with_second_target(axes_project(tmp_path, ("x",)))
+    folder = with_second_target(own_axis_project(tmp_path))
     session = session_of(folder)
     yield session, folder
     session.ended.set()

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -106,10 +105,3 @@ def test_a_message_of_the_build_finds_its_port(host_page: Page, tmp_path: Path) 
     assert message["port"] == "pwm_pan"
     source = page.json(f"api/source?file={message['file'].replace(' ', '%20')}&line={message['line']}")
     assert "pwm_pan: pwm_pam" in source["lines"][source["line"] - source["first"]]
-
-
-def test_a_build_is_cancelled(host_page: Page) -> None:
-    host_page.generate()
-    time.sleep(0.5)
-    host_page.post("cancel")
-    assert host_page.until(lambda state: state["build"]["state"] != "running")["build"]["state"] == "cancelled"

@@ -20,7 +20,7 @@ from epg.generator.correction import correction
 from epg.generator.diagnostics import Diagnostic, Diagnostics
 from epg.generator.source import Span
 from tests.connect.page import Denied, Page, serving, session_of
-from tests.connect.robots import ROOT, jiwy_export_project, one_axis_project
+from tests.connect.robots import ROOT, one_axis_project
 
 
 def test_a_port_is_connected_and_saved(page: Page, bindings: Path) -> None:
@@ -149,40 +149,6 @@ def test_a_line_is_inserted_and_taken_back(page: Page, bindings: Path) -> None:
     apply(page, edit_of(page.state(), "unbound-input"))
     page.post("save")
     assert bindings.read_text() == "# mine\n" + right
-
-
-def test_homing_of_an_export_without_resets(tmp_path: Path) -> None:
-    """Wires are right, and two guards wait for a reset that the controller does not have: a button for each."""
-    folder = jiwy_export_project(tmp_path)
-    with serving(session_of(folder)) as page:
-        state = page.post("accept")
-        for name in ("guard_pan", "guard_tilt"):
-            message = next(each for each in state["diagnostics"] if each["id"] == "needs-bound")
-            (edit,) = message["edits"]
-            assert edit["sentence"] == f"write 'homing: null' in '{name}' of robot.tcf"
-            state = apply(page, edit)
-        assert {each["id"] for each in state["diagnostics"]} == {"unused-component"}
-        page.post("save")
-    assert (
-        "components:\n  guard_pan: {homing: null}\n  guard_tilt: {homing: null}\n" in (folder / "robot.tcf").read_text()
-    )
-
-
-def test_the_user_chooses_one_of_two_edits(page: Page, project: Path, bindings: Path) -> None:
-    right = bindings.read_text()
-    bindings.write_text(right.replace("encoder_tilt.reset", "unconnected"))
-    (message,) = page.state()["diagnostics"]
-    wire, without = message["edits"]
-    assert [edit["sentence"] for edit in (wire, without)] == [
-        "write 'encoder_reset_tilt: encoder_tilt.reset'",
-        "write 'homing: null' in 'guard_tilt' of robot.tcf",
-    ]
-    assert message["hint"] == f"{wire['sentence']}, or {without['sentence']}"
-    assert apply(page, without)["diagnostics"] == []
-    assert page.post("undo")["diagnostics"] == [message]
-    assert apply(page, wire)["diagnostics"] == []
-    page.post("save")
-    assert bindings.read_text() == right and "homing" not in (project / "robot.tcf").read_text()
 
 
 def test_edits_of_files_of_epg_are_not_offered(tmp_path: Path) -> None:
@@ -473,14 +439,6 @@ def test_a_model_that_was_exported_again(project: Path, bindings: Path) -> None:
         assert "steps" not in page.post("disconnect", port="steps")["wires"]
         page.post("save")
     assert bindings.read_text() == "version: 1\nmodel: Idle\noutputs: {angle: tilt_publisher}\n"
-
-
-def test_a_model_that_is_gone_comes_back(page: Page, project: Path) -> None:
-    (project / "model").rename(project / "elsewhere")
-    state = page.until(lambda state: state["model"] is None)
-    assert [each["id"] for each in state["diagnostics"]] == ["model-not-found"] and not state["editable"]
-    (project / "elsewhere").rename(project / "model")
-    assert page.until(lambda state: state["model"] is not None)["diagnostics"] == []
 
 
 def test_a_file_of_the_model_that_comes_to_lie_beside_it(page: Page, project: Path) -> None:

@@ -23,7 +23,7 @@ from epg.connect.terminal.console import Console
 from epg.connect.terminal.dialog import run
 from tests.connect.builds import processes
 from tests.connect.page import session_of
-from tests.connect.robots import axes_project, with_second_target
+from tests.connect.robots import own_axis_project, with_second_target
 
 ROOT = Path(__file__).resolve().parents[2]
 MODEL = ROOT / "examples/jiwy/model"
@@ -386,7 +386,7 @@ def test_a_terminal_obeys_no_text_of_a_file() -> None:
 
 
 def test_errors_in_other_targets_are_listed_before_saving(tmp_path: Path) -> None:
-    folder = with_second_target(axes_project(tmp_path, ("x",)))
+    folder = with_second_target(own_axis_project(tmp_path))
     session = session_of(folder)
     session.act("connect", {"port": "setpoint_x", "ends": [{"reference": "end_x"}]})
     session.act("connect", {"port": "position_x", "ends": [{"reference": "end_x"}]})

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from epg.cli.main import main
-from tests.connect.robots import axes_project, with_second_target
+from tests.connect.robots import own_axis_project, with_second_target
 from tests.doubles.toolchain import skip_if_missing
 
 from .acts import tab_to, until
@@ -75,64 +75,49 @@ class Keyboard:
         self.choose(f"ends-{port}-0", f":{reference}")
 
 
-def build_axis(user: Keyboard, axis: str) -> None:
-    """One axis with encoder, motor, limit switch and guard, in place of the topics of the new project."""
-    user.add("quadrature_encoder", f"encoder_{axis}", {"counts_per_revolution": "4096"})
-    user.add("pwm_h_bridge", f"motor_{axis}")
-    user.add("digital_input", f"limit_{axis}")
-    user.choose(f"field-components-limit_{axis}-pull", "up")
-    user.choose(f"field-components-limit_{axis}-invert", "true")
-    user.add(
-        "motion_guard",
-        f"guard_{axis}",
-        {"actuator": f"motor_{axis}", "encoder": f"encoder_{axis}"},
-        boxes=("stall",),
-    )
-    user.wire(f"position_{axis}", f"encoder_{axis}")
-    user.wire(f"end_{axis}", f"limit_{axis}")
-    user.wire(f"duty_{axis}", f"motor_{axis}")
-
-
-def build_robot(served: Served, page: Any, folder: Path, axes: tuple[str, ...]) -> None:
-    user = Keyboard(page)
-    page.locator(".diagram").wait_for()
-    for axis in axes:
-        build_axis(user, axis)
-    user.add("digital_input", "emergency_stop")
-    user.choose("field-components-emergency_stop-pull", "up")
-    user.choose("field-components-emergency_stop-invert", "true")
+def build_robot(user: Keyboard) -> None:
+    """An axis with encoder, motor, limit switch and guard in place of the topics of the project, and a stop."""
+    user.add("quadrature_encoder", "encoder", {"counts_per_revolution": "4096"})
+    user.add("pwm_h_bridge", "motor")
+    for name in ("limit", "emergency_stop"):
+        user.add("digital_input", name)
+        user.choose(f"field-components-{name}-pull", "up")
+        user.choose(f"field-components-{name}-invert", "true")
+    user.add("motion_guard", "guard", {"actuator": "motor", "encoder": "encoder"}, boxes=("stall",))
+    for port, component in (("position_x", "encoder"), ("end_x", "limit"), ("duty_x", "motor")):
+        user.wire(port, component)
     user.to("it.id === 'tab-component'")
     user.press("ArrowRight")
-    until(page, "document.activeElement.id === 'tab-settings'")
+    until(user.page, "document.activeElement.id === 'tab-settings'")
     user.choose("field-control-fail_safe", "emergency_stop")
     user.write("field-control-period", "1 ms")
     user.press("Enter")
-    until(page, "document.getElementById('field-control-period').parentElement.querySelector('.origin')")
+    until(user.page, "document.getElementById('field-control-period').parentElement.querySelector('.origin')")
     user.to("it.className === 'leave-out'")
     user.press("Enter")
-    until(page, "!document.querySelector('.leave-out')")
+    until(user.page, "!document.querySelector('.leave-out')")
     user.press("Control+s")
-    until(page, "document.querySelector('.saved').textContent === 'Saved'")
-    state = served.state()
-    assert [each["message"] for each in state["diagnostics"] if each["severity"] != "note"] == []
-    components = {each["name"] for each in state["components"]}
-    parts = ("encoder", "motor", "limit", "guard")
-    topics = {f"setpoint_{axis}" for axis in axes}
-    assert components == {f"{part}_{axis}" for axis in axes for part in parts} | topics | {"emergency_stop"}
-    files = ["--tcf", folder / "robot.tcf", "--model", folder / "model", "--bindings", folder / "robot.bindings.yaml"]
-    assert main(["check", *map(str, files)]) == 0
+    until(user.page, "document.querySelector('.saved').textContent === 'Saved'")
 
 
 @pytest.fixture
 def one_axis(browser: Any, tmp_path: Path) -> Iterator[tuple[Served, Path]]:
-    folder = axes_project(tmp_path, ("x",))
+    folder = own_axis_project(tmp_path)
     with Served(folder) as served:
         yield served, folder
 
 
 def test_a_robot_of_one_axis_by_keyboard(one_axis: tuple[Served, Path], open_page: Open) -> None:
     served, folder = one_axis
-    build_robot(served, open_page(served.address), folder, ("x",))
+    page = open_page(served.address)
+    page.locator(".diagram").wait_for()
+    build_robot(Keyboard(page))
+    state = served.state()
+    assert [each["message"] for each in state["diagnostics"] if each["severity"] != "note"] == []
+    components = {each["name"] for each in state["components"]}
+    assert components == {"encoder", "motor", "limit", "guard", "setpoint_x", "emergency_stop"}
+    files = ["--tcf", folder / "robot.tcf", "--model", folder / "model", "--bindings", folder / "robot.bindings.yaml"]
+    assert main(["check", *map(str, files)]) == 0
 
 
 def test_a_file_of_epg_is_shown_but_not_changed(jiwy: Project, open_page: Open) -> None:
@@ -184,7 +169,7 @@ def test_messages_lead_to_their_fields(one_axis: tuple[Served, Path], open_page:
 
 
 def test_errors_in_another_target_need_an_agreement(browser: Any, tmp_path: Path, open_page: Open) -> None:
-    folder = with_second_target(axes_project(tmp_path, ("x",)))
+    folder = with_second_target(own_axis_project(tmp_path))
     with Served(folder) as served:
         page = open_page(served.address)
         page.get_by_role("button", name="position_x", exact=True).click()

@@ -327,16 +327,6 @@ def test_a_proposed_edit_is_applied(jiwy: Project, open_page: Open) -> None:
     assert jiwy.text() == right
 
 
-def test_a_missing_wire_is_a_line_to_insert(jiwy: Project, open_page: Open) -> None:
-    right = jiwy.text()
-    jiwy.write(UNBOUND)
-    page = open_page(jiwy.address)
-    page.get_by_role("button", name="Apply: add 'inputs: {position_tilt: encoder_tilt}'").click()
-    page.get_by_text("No problems", exact=True).wait_for()
-    save(page)
-    assert jiwy.text() == right
-
-
 def test_each_remedy_of_homing_is_a_button(open_page: Open, tmp_path: Path) -> None:
     """A controller without an output for the reset has one remedy for each guard, one that has it two."""
     folder = jiwy_export_project(tmp_path)
@@ -419,16 +409,6 @@ def test_conversions_of_the_tcf_and_of_units(jiwy: Project, open_page: Open, tmp
         assert page.locator('.sinks .port[data-name="pwm_pan"] .tcf-label').inner_text() == ".tcf: ×0.5"
         port(page, "pwm_pan").locator(".wire-label").click()
         assert "×0.5" in page.get_by_role("dialog", name="pwm_pan → pwm_pan").inner_text()
-
-
-def test_parts_that_no_port_uses_are_left_out(browser: Any, open_page: Open, one_axis: Path) -> None:
-    with Served(one_axis) as epg:
-        page = open_page(epg.address)
-        page.get_by_role("button", name="Leave out 7 parts of the robot that no port uses").click()
-        page.get_by_text("No problems", exact=True).wait_for()
-        assert page.locator(".component-name").get_by_text("encoder_tilt").count() == 0
-        page.get_by_role("tab", name="Changes").click()
-        assert "+  guard_pan: {homing: null}" in page.get_by_role("tabpanel").inner_text()
 
 
 def test_pictures_stay_while_there_are_errors(jiwy: Project, open_page: Open) -> None:

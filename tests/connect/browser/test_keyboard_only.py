@@ -30,24 +30,6 @@ def test_everything_by_keyboard(started: Served, model: Path, open_page: Open) -
     folder = Path(started.state()["project"]["folder"])
     assert folder.parent == model.parent
 
-    # A wire removed by the list, and restored by the handles.
-    tab_to(page, "it.id === 'ends-pwm_tilt-0'")
-    page.keyboard.press("Home")
-    until(page, "document.querySelector('.saved').textContent.includes('Unsaved')")
-    assert "pwm_tilt" not in started.state()["wires"]
-    page.keyboard.press("Escape")
-    tab_to(page, "it.dataset.side === 'sinks'")
-    while page.evaluate("document.activeElement.dataset.name") != "pwm_tilt":
-        page.keyboard.press("ArrowDown")
-    page.keyboard.press("Enter")
-    page.keyboard.press("ArrowDown")
-    while page.evaluate("document.activeElement.dataset.name") != "pwm_tilt":
-        page.keyboard.press("ArrowDown")
-    page.keyboard.press("Enter")
-    until(page, "document.getElementById('ends-pwm_tilt-0').value === ':pwm_tilt'")
-    page.keyboard.press("Control+s")
-    until(page, "document.querySelector('.saved').textContent === 'Saved'")
-
     tab_to(page, "it.textContent === 'Generate'")
     page.keyboard.press("Enter")
     page.get_by_role("dialog", name="Run these commands?").wait_for()
