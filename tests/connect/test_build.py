@@ -59,6 +59,12 @@ def edit(file: Path, old: str, new: str) -> None:
     file.write_text(text.replace(old, new))
 
 
+def append(robot: Path, text: str) -> None:
+    """Adds lines to the project's CMakeLists.txt."""
+    with (robot / "CMakeLists.txt").open("a") as file:
+        file.write(text)
+
+
 def messages(build: Build) -> list[tuple[str, str, int]]:
     return [(found["message"], Path(found["file"]).name, found["line"]) for found in build.state()["messages"]]
 
@@ -102,8 +108,7 @@ def test_an_executable_of_ones_own_is_a_product_and_others_are_not(robot: Path) 
     (robot / "own.c").write_text("int main(void)\n{\n    return 0;\n}\n")
     (robot / "other.c").write_text("int main(void)\n{\n    return 0;\n}\n")
     lines = "add_executable(own own.c)\ntarget_link_libraries(own PRIVATE EPG::jiwy)\nadd_executable(other other.c)\n"
-    with (robot / "CMakeLists.txt").open("a") as file:
-        file.write(lines)
+    append(robot, lines)
     state = run(job_of(robot)).state()
     assert state["state"] == "done", state
     assert [Path(product["path"]).name for product in state["products"]] == ["jiwy_host", "own"]
@@ -137,8 +142,7 @@ def test_a_mistake_in_the_bindings_is_said_once_in_epgs_words(robot: Path) -> No
 
 def test_a_mistake_in_c_has_its_place(robot: Path) -> None:
     (robot / "own.c").write_text("int main(void)\n{\n    int unused;\n    return 0\n}\n")
-    with (robot / "CMakeLists.txt").open("a") as file:
-        file.write("add_executable(own own.c)\ntarget_compile_options(own PRIVATE -Wall)\n")
+    append(robot, "add_executable(own own.c)\ntarget_compile_options(own PRIVATE -Wall)\n")
     build = run(job_of(robot))
     state = build.state()
     assert (state["state"], state["step"]) == ("failed", "build")
@@ -151,8 +155,7 @@ def test_a_mistake_in_c_has_its_place(robot: Path) -> None:
 
 def test_what_the_linker_misses_is_said_once(robot: Path) -> None:
     (robot / "own.c").write_text("int missing(void);\nint main(void)\n{\n    return missing() + missing();\n}\n")
-    with (robot / "CMakeLists.txt").open("a") as file:
-        file.write("add_executable(own own.c)\n")
+    append(robot, "add_executable(own own.c)\n")
     build = run(job_of(robot))
     assert build.state()["state"] == "failed"
     assert messages(build) == [("undefined reference to `missing'", "own.c", 4)]
@@ -162,8 +165,7 @@ def test_a_failure_that_nobody_understands_is_its_last_lines(robot: Path) -> Non
     command = (
         'COMMAND "${CMAKE_COMMAND}" -E echo "the moon is in the wrong quarter" COMMAND "${CMAKE_COMMAND}" -E false'
     )
-    with (robot / "CMakeLists.txt").open("a") as file:
-        file.write(f"add_custom_target(own ALL {command})\n")
+    append(robot, f"add_custom_target(own ALL {command})\n")
     (found,) = run(job_of(robot)).state()["messages"]
     assert found["id"] == "build-failed" and "the moon is in the wrong quarter" in found["message"]
 
@@ -398,10 +400,9 @@ def test_a_build_inside_a_build_is_no_part_of_it(robot: Path, tmp_path: Path) ->
 def test_long_output_is_bounded(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(build_module, "KEPT", 20)
     monkeypatch.setattr(build_module, "WIDEST", 100)
-    with (robot / "CMakeLists.txt").open("a") as file:
-        file.write(
-            'foreach(i RANGE 200)\nstring(REPEAT "x" 300 long)\nmessage(STATUS "line ${i} ${long}")\nendforeach()\n'
-        )
+    append(
+        robot, 'foreach(i RANGE 200)\nstring(REPEAT "x" 300 long)\nmessage(STATUS "line ${i} ${long}")\nendforeach()\n'
+    )
     lines = (build := run(job_of(robot))).lines(0)
     assert len(lines) == build.state()["lines"] > 200, "line numbers stay what they were"
     assert lines[:-20] == [build_module.FORGOTTEN] * (len(lines) - 20)

@@ -43,6 +43,12 @@ def stop(robot: Robot, epg: Served) -> None:
     robot.wait(driven=False)
 
 
+def show_live_in(firefox: Firefox, address: str) -> None:
+    firefox.open(address)
+    firefox.click("#tab-live")
+    firefox.until(f"document.querySelector('{READY}')", 20)
+
+
 def show_live(page: Any, address: str) -> None:
     page.goto(address)
     page.get_by_role("tab", name="Live").click()
@@ -67,14 +73,10 @@ def test_tabs_and_windows_of_chromium(way: Way) -> None:
 def test_tabs_of_firefox(robot: Robot, firefox: Firefox) -> None:
     with Served(PROJECT) as epg:
         epg.post("live/connect", path=str(robot.port))
-        firefox.open(epg.address)
-        firefox.click("#tab-live")
-        firefox.until(f"document.querySelector('{READY}')", 20)
+        show_live_in(firefox, epg.address)
         firefox.new_tab()
         try:
-            firefox.open(epg.address)
-            firefox.click("#tab-live")
-            firefox.until(f"document.querySelector('{READY}')", 20)
+            show_live_in(firefox, epg.address)
             first = firefox.evaluate(NEWEST)
             firefox.hold("button.hold", HOLD)
             stays_enabled(robot)
@@ -93,9 +95,7 @@ def test_tabs_of_firefox(robot: Robot, firefox: Firefox) -> None:
 def test_two_browsers(way: Way, firefox: Firefox) -> None:
     way.connect()
     way.page.locator(READY).wait_for()
-    firefox.open(way.epg.address)
-    firefox.click("#tab-live")
-    firefox.until(f"document.querySelector('{READY}')", 20)
+    show_live_in(firefox, way.epg.address)
     way.enable()
     stays_enabled(way.robot)
     firefox.press("Escape")
@@ -137,9 +137,7 @@ def test_the_lease_does_not_wait_for_drawing(browser: str, way: Way, request: An
     if browser == "firefox":
         firefox = request.getfixturevalue("firefox")
         way.epg.post("live/connect", path=str(way.line.port))
-        firefox.open(way.epg.address)
-        firefox.click("#tab-live")
-        firefox.until(f"document.querySelector('{READY}')", 20)
+        show_live_in(firefox, way.epg.address)
         firefox.hold("button.hold", HOLD)
         way.robot.wait(driven=True)
         evaluate = firefox.evaluate

@@ -13,7 +13,6 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping
 from pathlib import Path
-from types import TracebackType
 
 from tests.doubles.rp2040.emulator import Emulator
 from tests.doubles.xrce_agent.messages import float64, read_float64
@@ -73,9 +72,7 @@ class Jiwy:
     def __enter__(self) -> Jiwy:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.agent.close()
         self.pico.close()
 
