@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from epg.cli.arguments import user_roots
 from epg.cli.progress import StopRequest
 from epg.generator.diagnostics import Diagnostics
 from epg.generator.source import Span
@@ -79,7 +80,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.live.udp import PortLocked, PortTaken
 
     if options.port is None:
-        return _list(options)
+        return _list(options, diagnostics)
     kept = _checked(options, diagnostics)
     relay = _Relay()
     try:
@@ -426,12 +427,14 @@ def _start(recording: Recorder, client: Client, names: list[str], options: argpa
         sys.stderr.write(f"a row in every {every}th control cycle: the port carries no more\n")
 
 
-def _list(options: argparse.Namespace) -> int:
+def _list(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.cli.report import to_json
     from epg.cli.table import table
+    from epg.generator.catalog.catalog import load_catalog
+    from epg.generator.data import targets_roots
     from epg.live.found import look_at_all, ports
 
-    found = look_at_all(ports())
+    found = look_at_all(ports(), load_catalog(targets_roots(user_roots()), diagnostics).usb_vendors())
     if options.json:
         data = [
             {

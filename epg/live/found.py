@@ -7,7 +7,7 @@ can make it act.  A port that a program of this user has open is not touched.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,9 +15,6 @@ from pathlib import Path
 from epg.live.client import Client, CommandRefused, Lost, TargetDescription
 from epg.live.port import PortError, SerialPort
 from epg.live.ports import system
-
-VENDORS = {"2e8a": "Raspberry Pi", "0483": "STMicroelectronics", "2fe3": "Zephyr"}
-"""USB vendors of boards with EPG and of their debug probes, without a vendor that ``communication.usb`` sets."""
 
 
 @dataclass(frozen=True)
@@ -38,17 +35,17 @@ def ports() -> dict[Path, str]:
         return {}  # a system without ports
 
 
-def look_at_all(devices: Mapping[Path, str]) -> list[Found]:
-    """Asks the targets behind ports, all at the same time: in less than 2 s."""
+def look_at_all(devices: Mapping[Path, str], vendors: Collection[str]) -> list[Found]:
+    """Asks the targets behind ports of USB ``vendors``, all at the same time: in less than 2 s."""
     if not devices:
         return []
     with ThreadPoolExecutor(len(devices)) as pool:
-        return list(pool.map(look_at, devices, devices.values()))
+        return list(pool.map(lambda path: _look_at(path, devices[path], vendors), devices))
 
 
-def look_at(path: Path, device: str = "") -> Found:
+def _look_at(path: Path, device: str, vendors: Collection[str]) -> Found:
     """Asks the target behind a port to describe itself, if the port is that of a board and is not in use."""
-    if system().usb_port(path).vendor not in VENDORS:
+    if system().usb_port(path).vendor not in vendors:
         return Found(path, device, None, "not asked: it is not a board that EPG knows")
     user = system().program_with(path)
     if user:

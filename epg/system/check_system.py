@@ -25,9 +25,6 @@ from epg.system.plant import check_plant, load_plant
 from epg.system.ranges import Range, received_range, sent_range
 from epg.system.system import Connection, End, System
 
-_PARTICIPANTS = 33
-"""Programs on one computer that DDS can find in a domain: the default of Cyclone DDS, MaxAutoParticipantIndex."""
-
 _BY_NAME = ("sensor_msgs/msg/JointState",)
 """Messages that name their elements, so that a receiver finds the elements that it needs in any order."""
 
@@ -343,20 +340,18 @@ class _Checker:
                 self.diagnostics.error("unit-mismatch", second.span, message, hint=hint)
 
     def check_participants(self) -> None:
-        """Reports more programs on one computer than DDS finds."""
-        programs = [
-            name
-            for name, target in self.targets.items()
-            if target.application.communication.middleware.name == "dds"
-            and target.application.target.platform.simulates_plant
-        ]
-        if len(programs) > _PARTICIPANTS:
-            span = self.system.targets[programs[_PARTICIPANTS]].span
-            message = (
-                f"{len(programs)} targets are programs with the middleware 'dds': one computer can have {_PARTICIPANTS}"
-            )
-            hint = "use other middlewares or domains, or several computers"
-            self.diagnostics.error("too-many-participants", span, message, hint=hint)
+        """Reports more programs on one computer than their middleware finds."""
+        programs: dict[str, list[str]] = {}
+        for name, target in self.targets.items():
+            if target.application.target.platform.simulates_plant:
+                programs.setdefault(target.application.communication.middleware.name, []).append(name)
+        for middleware, names in programs.items():
+            most = self.targets[names[0]].application.communication.middleware.programs
+            if most is not None and len(names) > most:
+                what = f"{len(names)} targets are programs with the middleware '{middleware}'"
+                span, message = self.system.targets[names[most]].span, f"{what}: one computer can have {most}"
+                hint = "use other middlewares or domains, or several computers"
+                self.diagnostics.error("too-many-participants", span, message, hint=hint)
 
 
 def _ends(connection: Connection) -> tuple[End, End]:

@@ -13,10 +13,19 @@ from pathlib import Path
 
 import pytest
 
+from epg.generator.catalog.catalog import load_catalog
+from epg.generator.data import own_roots
+from epg.generator.diagnostics import Diagnostics
 from epg.live import found
 from epg.live.ports import linux
 
 from .target import Target
+
+VENDORS = load_catalog(own_roots(), Diagnostics()).usb_vendors()
+
+
+def test_the_vendors_are_those_of_the_boards() -> None:
+    assert {"2e8a", "0483", "2fe3"} == VENDORS
 
 
 @pytest.fixture
@@ -61,7 +70,7 @@ def test_targets_are_found_beside_a_silent_board(system: Path, target: Target, s
     attach(system, target.port, "2e8a")
     attach(system, path, "0483")
     begin = time.monotonic()
-    one, two = found.look_at_all({target.port: "Pico", path: "STLINK"})
+    one, two = found.look_at_all({target.port: "Pico", path: "STLINK"}, VENDORS)
     assert time.monotonic() - begin < 2
     assert one.target is not None and (one.target.name, one.device) == ("jiwy", "Pico")
     assert two.target is None and "does not answer" in two.reason
@@ -73,7 +82,7 @@ def test_another_device_is_not_touched(system: Path, silent: tuple[int, Path], v
     own, path = silent
     if vendor is not None:
         attach(system, path, vendor)
-    (one,) = found.look_at_all({path: ""})
+    (one,) = found.look_at_all({path: ""}, VENDORS)
     assert (one.target, one.reason) == (None, "not asked: it is not a board that EPG knows")
     assert got(own) == b""
 
@@ -87,7 +96,7 @@ def test_a_port_in_use_is_not_touched(system: Path, silent: tuple[int, Path]) ->
     ) as user:
         assert user.stdout is not None and user.stdin is not None
         user.stdout.readline()
-        (one,) = found.look_at_all({path: ""})
+        (one,) = found.look_at_all({path: ""}, VENDORS)
         user.stdin.close()
     assert one.target is None and f"(process {user.pid})" in one.reason
     assert got(own) == b""

@@ -109,6 +109,13 @@ class Catalog:
         """The middleware ``name``, or None if it does not exist or has mistakes."""
         return self._item("middleware", name, make_middleware)
 
+    def usb_vendors(self) -> set[str]:
+        """The USB vendors of boards with EPG and of their debug probes, without those that only a ``.tcf`` sets."""
+        platforms = [self._item("platform", name, make_platform) for name in self.names("platform")]
+        families = [self.find_family(name) for name in self.names("family")]
+        boards = [id[:4] for family in families if family and family.flash for id in family.flash.usb]
+        return {*boards, *(vendor for platform in platforms if platform for vendor in platform.usb_vendors)}
+
     def kind(self, name: str, span: Span, diagnostics: Diagnostics) -> Kind | None:
         """The kind ``name``, or None after reporting mistakes in its file, or at ``span`` that it does not exist."""
         if name not in self._paths("component"):

@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 from epg.generator.catalog.kind import TEMPLATE, KindParameter, make_parameters
 from epg.generator.dataclass import dataclass
-from epg.generator.documents.items import flag_of, map_of, text_of, texts_of
+from epg.generator.documents.items import flag_of, map_of, text_of, texts_of, values_of
 from epg.generator.source import Span, YamlNode
 
 STACK = 2048
@@ -26,8 +26,9 @@ class Middleware:
     ``platforms`` maps platforms on which the middleware runs, although their own files do not name it, to transports.
     ``families`` are the only families of chips that it supports there; all if there are none.
     ``connection`` is "stream" (bytes, carried by a transport of the platform), "own" or "none".  ``agent`` is
-    the ROS 2 package of the agent that its targets need, with a program of the same name, or "".  ``uses`` names the
-    parts that the generator must add to a target: "node", "services", "signals", "parameters", "capture", "jog".
+    the ROS 2 package of the agent that its targets need, with a program of the same name, or "".  ``programs`` is
+    the largest number of programs on one computer that find each other; None: any number.  ``uses`` names the parts
+    that the generator must add to a target: "node", "services", "signals", "parameters", "capture", "jog".
     ``quality`` are the policies that it has in addition to reliability and history: "durability", "deadline",
     "lifespan".
     ``namespace_parts`` is the number of parts of a namespace that ``ros2 node`` shows correctly; None: any number.
@@ -40,6 +41,7 @@ class Middleware:
     summary: str
     connection: str
     agent: str
+    programs: int | None
     platforms: Mapping[str, tuple[str, ...]]
     families: tuple[str, ...]
     uses: tuple[str, ...]
@@ -74,24 +76,14 @@ class Middleware:
 
 def make_middleware(node: YamlNode, folder: Path) -> Middleware:
     """The middleware that a checked ``middleware.yaml`` describes."""
-    return Middleware(
-        name=text_of(node, "middleware"),
-        summary=text_of(node, "summary"),
-        connection=text_of(node, "connection"),
-        agent=text_of(node, "agent"),
-        platforms=MappingProxyType({name: texts_of(node, "platforms", name) for name in map_of(node, "platforms")}),
-        families=texts_of(node, "families"),
-        uses=texts_of(node, "uses"),
-        quality=texts_of(node, "quality"),
-        namespace_parts=int(str(parts.value)) if (parts := node.get("namespace_parts")) is not None else None,
-        needs=texts_of(node, "needs"),
-        options=make_parameters(node.get("options")),
-        symbol=text_of(node, "driver", "symbol"),
-        headers=texts_of(node, "driver", "headers"),
-        sources=texts_of(node, "driver", "sources"),
-        stack=stack.value if (stack := node.get("stack")) is not None and isinstance(stack.value, int) else STACK,
-        builds="builds" not in node or flag_of(node, "builds"),
-        node=node,
-        folder=folder,
-        span=node["middleware"].span,
-    )
+    numbers = {key: int(text_of(node, key)) for key in ("namespace_parts", "programs", "stack") if key in node}
+    values = values_of(node, Middleware) | {
+        "name": text_of(node, "middleware"),
+        "platforms": MappingProxyType({name: texts_of(node, "platforms", name) for name in map_of(node, "platforms")}),
+        **{"namespace_parts": None, "programs": None, "stack": STACK, **numbers},
+        "options": make_parameters(node.get("options")),
+        "symbol": text_of(node, "driver", "symbol"),
+        **{key: texts_of(node, "driver", key) for key in ("headers", "sources")},
+        "builds": "builds" not in node or flag_of(node, "builds"),
+    }
+    return Middleware(**values, node=node, folder=folder, span=node["middleware"].span)

@@ -75,9 +75,11 @@ class Platform(PortLayer):
     encoders in interrupts, so that they do not depend on the control period.  ``shared`` are folders beside this one
     whose templates the platform uses, too.  ``built_by`` is "cmake" or "west".  ``program`` is the CMake target of the
     executable if the SDK makes it.  ``added`` are the classes of peripherals that bring their C for this port layer.
+    ``usb_vendors`` are vendors of USB devices by its own USB stack.
     """
 
     families: tuple[str, ...]
+    usb_vendors: tuple[str, ...]
     board: str | None  # the only board of the platform; the only target then has the name of the platform
     simulates_plant: bool
     for_systems: bool
