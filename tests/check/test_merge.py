@@ -13,9 +13,9 @@ from epg.generator.documents.tcf import load_tcf_chain, settings_node
 from epg.generator.source import Span, YamlNode
 
 
-def merged(folder: Path, name: str, *settings: str) -> YamlNode:
+def merged(folder: Path, name: str, *settings: str, wanted_by: Span | None = None) -> YamlNode:
     problems = Diagnostics()
-    chain = load_tcf_chain(name, [], problems, beside=folder)
+    chain = load_tcf_chain(name, [], problems, beside=folder, wanted_by=wanted_by)
     root = apply_settings(merge_chain(chain), settings_node([(s, Span("CMakeLists.txt")) for s in settings], problems))
     assert not list(problems)
     return root
@@ -41,9 +41,11 @@ def test_values_keep_the_position_of_the_file_that_wrote_them(files: Path) -> No
 
 
 def test_an_inherited_value_knows_who_inherits_it_nearest_first(files: Path) -> None:
-    origins = merged(files, "target.tcf")["a"]["x"].origins
-    assert [(Path(span.file).name, span.line) for span in origins] == [("wiring.tcf", 1), ("target.tcf", 1)]
-    assert merged(files, "target.tcf")["a"]["z"].origins == ()
+    """The position at which CMake or a system names the first file is none of an ``extends``."""
+    for wanted_by in (None, Span("CMakeLists.txt", 3)):
+        tree = merged(files, "target.tcf", wanted_by=wanted_by)["a"]
+        origins = [[(Path(span.file).name, span.line) for span in tree[key].origins] for key in ("x", "y", "z")]
+        assert origins == [[("wiring.tcf", 1), ("target.tcf", 1)], [("target.tcf", 1)], []]
 
 
 def test_settings_come_last_and_may_make_or_delete_keys(files: Path) -> None:

@@ -19,7 +19,7 @@ from epg.generator.source import Span, YamlNode
 def merge_chain(chain: Sequence[TcfFile]) -> YamlNode:
     """The merged tree of a chain (the extending file first), without ``extends`` and without ``null``."""
     merged: YamlNode | None = None
-    origins: list[Span] = [file.extended_by for file in chain if file.extended_by is not None]
+    origins: list[Span] = [file.extended_by for file in chain[1:] if file.extended_by is not None]
     composed = {str(file.path) for file in chain if file.is_composed}  # users cannot look into these
     for index in range(len(chain) - 1, -1, -1):
         node = _with_origins(
