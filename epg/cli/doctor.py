@@ -23,8 +23,9 @@ from epg.generator import bootstrap
 from epg.generator.data import targets_roots
 from epg.generator.dataclass import dataclass
 from epg.generator.diagnostics import Diagnostics
+from epg.generator.install import package_commands
 from epg.generator.tools.find_tool import Finding, Surroundings, find_tool, read_cmake_cache
-from epg.generator.tools.remedy import command_for, package_manager, privileged
+from epg.generator.tools.remedy import command_for
 from epg.generator.tools.tools import Tool, load_tools
 
 HOST = "host"
@@ -155,11 +156,12 @@ def _package(group: str, name: str, oldest: tuple[int, ...], *, required: bool) 
             path = Path(str(distribution.locate_file(""))).as_posix()
             return ReportedTool(name.lower(), name, HOST, required, "found", distribution.version, path, source, note)
         old = distribution.version if distribution is not None else old
-    remedy = f"{sys.executable} -m pip install {name}"
+    commands = package_commands([name])
+    remedy = commands[0]
     if importlib.util.find_spec("pip") is not None and not os.environ.get("EPG_NO_INSTALL"):
         return ReportedTool(name.lower(), name, HOST, required, "later", old, note=note, remedy=remedy)
-    if package_manager() == "apt" and group not in ("ros", "mcap"):  # Debian has no packages of these groups
-        remedy = f"{privileged('apt')}apt install python3-{'yaml' if name == 'PyYAML' else name.lower()}"
+    if group not in ("ros", "mcap"):  # Debian has no packages of these groups
+        remedy = commands[-1]
     return ReportedTool(name.lower(), name, HOST, required, "old" if old else "missing", old, note=note, remedy=remedy)
 
 
@@ -207,4 +209,4 @@ def _lines(items: Sequence[ReportedTool]) -> Iterable[str]:
             if item.note:
                 yield f"           {item.note}"
             if not item.good:
-                yield f"           {item.remedy}"
+                yield "           " + item.remedy.replace("\n", "\n           ")

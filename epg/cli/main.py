@@ -309,8 +309,12 @@ def _failed(problem: Exception, diagnostics: Diagnostics) -> int:
         sys.stderr.write(f"epg: {blamed}")
         return EXIT_MISSING
     if isinstance(problem, OSError):  # a folder that cannot be written, a full disk
+        from epg.generator.install import long_path_remedy
+
         where = f"{problem.filename}: " if problem.filename else ""
+        hint = long_path_remedy(str(problem.filename or ""))
         sys.stderr.write(f"epg: {where}{problem.strerror or problem}\n")
+        sys.stderr.write(f"hint: {hint}\n" if hint else "")
         return EXIT_MISSING
     import traceback
 

@@ -234,15 +234,11 @@ def _show_progress(line: str) -> None:
 
 
 def _remedy(missing: list[str], reason: str) -> str:
-    names = " ".join(missing)
-    debian = " ".join("python3-" + name.lower().replace("pyyaml", "yaml") for name in missing)
-    return (
-        f"EPG needs {', '.join(missing)} for {sys.executable}: {reason}\n"
-        f"hint: one of\n"
-        f"    {sys.executable} -m pip install {names}\n"
-        f"    apt install {debian}          (Debian, Ubuntu)\n"
-        f"    cmake -DPython3_EXECUTABLE=<a Python with these packages> ..."
-    )
+    from epg.generator.install import package_commands
+
+    commands = [*package_commands(missing), "cmake -DPython3_EXECUTABLE=<a Python with these packages> ..."]
+    lines = "".join(f"\n    {command}" for command in commands)
+    return f"EPG needs {', '.join(missing)} for {sys.executable}: {reason}\nhint: one of{lines}"
 
 
 if __name__ == "__main__":

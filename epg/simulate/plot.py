@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from epg.generator.diagnostics import Diagnostics
+from epg.generator.install import package_commands
 from epg.generator.source import Span
 from epg.runs.plot_style import (
     BLACK,
@@ -57,7 +58,7 @@ def plot(
             "matplotlib-missing",
             Span(path.name),
             f"not drawn: {error}",
-            hint="python3 -m pip install matplotlib, or on Debian and Ubuntu: apt install python3-matplotlib",
+            hint=", or: ".join(package_commands(["matplotlib"])),
         )
         return False
     heights = [*_HEIGHTS, *([_DUTY_HEIGHT] if any(tracking.duty is not None for tracking in trackings) else [])]

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import shutil
@@ -13,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from epg.cli.main import COMMANDS, main
+from epg.generator import install
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 JIWY = ROOT / "examples" / "jiwy"
@@ -94,11 +96,16 @@ def test_a_package_from_pythonpath_is_blamed(robot: Path, tmp_path: Path, text: 
     assert hint.startswith("hint: the variable PYTHONPATH has put it in the place of another one: unset PYTHONPATH (")
 
 
-def test_a_folder_that_cannot_be_written_is_status_4(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_folder_that_cannot_be_written_is_status_4(
+    robot: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     (robot / "host.tcf").write_text((robot / "robot.tcf").read_text().replace("rpi_pico_bare_metal", "host"))
     (robot / "out").write_text("a file where the folder should be")
     assert main(["generate", "robot", *HOST, "--output", "out"]) == 4
-    assert "Traceback" not in capsys.readouterr().err
+    assert capsys.readouterr().err == f"epg: out: {os.strerror(errno.EEXIST)}\n"
+    monkeypatch.setattr(install, "system", lambda: "windows")
+    assert main(["generate", "robot", *HOST, "--output", "out/" + "/".join(["deep"] * 60)]) == 4
+    assert "\nhint: Windows opens paths of up to 259 characters, and this one has " in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("name", ["cmake", "examples"])

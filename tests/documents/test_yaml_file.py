@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from epg.generator import install
 from epg.generator.diagnostics import Diagnostics
 from epg.generator.documents.yaml_file import load_yaml, parse_yaml
 from epg.generator.source import Span, YamlNode
@@ -139,3 +140,19 @@ def test_a_missing_file_names_its_neighbours(tmp_path: Path) -> None:
     (problem,) = problems
     assert problem.id == "file-not-found"
     assert "robot.yaml" in problem.hint
+
+
+@pytest.mark.parametrize(
+    ("system", "length", "remedy"), [("windows", 260, True), ("windows", 259, False), ("linux", 300, False)]
+)
+def test_a_path_that_windows_finds_too_long(
+    system: str, length: int, remedy: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(install, "system", lambda: system)
+    problems = Diagnostics()
+    load_yaml(Path(("/nowhere" * length)[:length]).absolute(), problems)
+    (problem,) = problems
+    told = f"Windows opens paths of up to 259 characters, and this one has {length}: "
+    assert problem.id == "file-not-found"
+    assert problem.hint.startswith(told) == remedy
+    assert ("move the folder to a shorter path" in problem.hint) == ("LongPathsEnabled" in problem.hint) == remedy

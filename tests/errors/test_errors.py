@@ -207,7 +207,7 @@ def test_message(
         head = re.split(r"^--- expected\n", text, flags=re.MULTILINE)[0]
         case.write_text(f"{head}--- expected\n{output.err}", encoding="utf-8")
         expected = output.err
-    assert output.err == expected
+    assert output.err.replace(os.sep, "/") == expected.replace(os.sep, "/")
     assert status == (1 if ": error: " in expected else 0)
     assert re.search(r": (error|warning|note): .* \[[a-z0-9.-]+\]$", expected, re.MULTILINE)
 
@@ -246,7 +246,7 @@ def test_message(
     lines = lines_after([(each, edits[0]) for each, edits in proposed if len(edits) == 1])
     for each, edits in proposed:
         lines += [f"or: {line}" for edit in edits for line in lines_after([(each, edit)]) if len(edits) > 1]
-    assert "".join(f"{line}\n" for line in lines) == read_meant(case)
+    assert "".join(f"{line}\n" for line in lines).replace(os.sep, "/") == read_meant(case)
     counted["meant"] += len(proposed)
 
 

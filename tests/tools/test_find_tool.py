@@ -6,6 +6,8 @@ from __future__ import annotations
 import json
 import os
 import re
+import shutil
+import sys
 from dataclasses import replace
 from fnmatch import fnmatch
 from pathlib import Path
@@ -13,8 +15,10 @@ from pathlib import Path
 import jsonschema
 import pytest
 
+from epg.generator import install
 from epg.generator.diagnostics import Diagnostics
 from epg.generator.tools import find_tool as module
+from epg.generator.tools import remedy
 from epg.generator.tools.find_tool import Surroundings, find_tool, read_cmake_cache
 from epg.generator.tools.tools import Tool, load_tools
 
@@ -186,6 +190,39 @@ def test_what_the_command_gets_is_found(tool: Tool, where: Surroundings) -> None
     (found / tool.holds).parent.mkdir(parents=True)
     (found / tool.holds).write_text("")
     assert find_tool(replace(tool, places=()), where).path == found
+
+
+@pytest.mark.parametrize("tool", TABLE.values(), ids=lambda tool: tool.name)
+def test_commands_of_windows(tool: Tool, where: Surroundings, monkeypatch: pytest.MonkeyPatch) -> None:
+    """They need nothing that PowerShell 5.1 or cmd lacks, and no program of another system."""
+    monkeypatch.setattr(remedy, "system", lambda: "windows")
+    text = remedy.get_it(tool, where, TABLE)
+    assert text.startswith("Get it:\n  ")
+    wrong = r"&&|~|\{|\$|\b(sudo|apt|apt-get|brew|python3|source|bin/activate|VisualStudio)\b"
+    assert not re.search(wrong, text), text
+
+
+def test_windows_has_a_line_for_each_program(where: Surroundings, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(remedy, "system", lambda: "windows")
+    home = replace(where, home=Path("C:/Users/Jörg Groß"))
+    assert remedy.command_for(TABLE["zephyr"], home, TABLE).splitlines() == [
+        'west init -m https://github.com/zephyrproject-rtos/zephyr --mr v4.1.0 "C:/Users/Jörg Groß"/zephyrproject',
+        'cd "C:/Users/Jörg Groß"/zephyrproject',
+        "west update",
+    ]
+
+
+@pytest.mark.parametrize("system", ["linux", "macos", "windows"])
+def test_each_system_has_a_remedy_of_its_own(system: str, where: Surroundings, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only Linux has apt, sudo and groups of devices, only Windows has py and drivers that the user installs."""
+    monkeypatch.setattr(install, "system", lambda: system)
+    monkeypatch.setattr(shutil, "which", lambda name: f"/usr/bin/{name}")
+    texts = [install.remedy(purpose, folder="epg", tool="picotool", length="300") for purpose in install.REMEDIES]
+    texts += install.package_commands(["PyYAML"])
+    found = {word for word in ("apt", "sudo", "plugdev", "dialout", "py -m", "Zadig") if any(word in t for t in texts)}
+    wanted = {"linux": {"apt", "sudo", "plugdev", "dialout"}, "macos": set(), "windows": {"py -m", "Zadig"}}
+    assert found == wanted[system]
+    assert f"{sys.executable} -m pip install PyYAML" in texts[-2:]
 
 
 VERSIONS = {

@@ -20,6 +20,7 @@ from epg.generator.bootstrap import cache_folder
 from epg.generator.catalog.platform import Flashing
 from epg.generator.dataclass import dataclass
 from epg.generator.diagnostics import Diagnostics, UserError
+from epg.generator.install import remedy
 from epg.generator.resolve.application import Application
 from epg.generator.source import Span
 from epg.generator.tools.find_tool import Surroundings
@@ -31,10 +32,6 @@ from epg.system import flash
 
 _NO_ACCESS = re.compile(r"LIBUSB_ERROR_ACCESS|was unable to connect|ermission denied", re.IGNORECASE)
 """What picotool and OpenOCD print if the user may not use a device."""
-_ACCESS_HINT = (
-    "this user may not use the device: install the udev rules of {tool}, or add the user to the group 'plugdev', and "
-    "plug the board in again"
-)
 _HINTS = {
     "wrong-chip": "attach the board of this target, or choose the target for this board",
     "other-program": "to overwrite it, choose 'Replace the other program'",
@@ -190,7 +187,7 @@ class FlashRun(Activity):
             refused = _NO_ACCESS.search("\n".join(self.lines(0)))
             hints = {each.id: _HINTS.get(each.id, each.hint) for each in messages_of_tool}
             if refused:
-                hints |= dict.fromkeys(("board-not-found", "flash-failed"), _ACCESS_HINT.format(tool=boards.tool))
+                hints |= dict.fromkeys(("board-not-found", "flash-failed"), remedy("board access", tool=boards.tool))
             messages = [
                 BuildMessage("error", each.message, hint=hints.get(each.id, ""), id=each.id)
                 for each in messages_of_tool

@@ -9,6 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from epg.generator.diagnostics import Diagnostics, nearest, question
+from epg.generator.install import long_path_remedy
 from epg.generator.source import Span
 
 MAX_BYTES = 1 << 20
@@ -46,10 +47,12 @@ def read_text(
             with path.open("rb") as file:
                 data = file.read(MAX_BYTES + 1)
     except FileNotFoundError:
-        diagnostics.error("file-not-found", whole, f"there is no file '{path.name}'", hint=_neighbours(path))
+        hint = long_path_remedy(str(path)) or _neighbours(path)
+        diagnostics.error("file-not-found", whole, f"there is no file '{path.name}'", hint=hint)
         return None
     except OSError as error:
-        diagnostics.error("file-unreadable", whole, f"cannot read '{path.name}': {error.strerror or error}")
+        message = f"cannot read '{path.name}': {error.strerror or error}"
+        diagnostics.error("file-unreadable", whole, message, hint=long_path_remedy(str(path)))
         return None
     if len(data) > MAX_BYTES:
         diagnostics.error("file-too-large", whole, too_large(path.name, MAX_BYTES), hint=ANOTHER_FILE)

@@ -66,6 +66,8 @@ _HINTS = {
 }
 """Hints for problems that the YAML parser names."""
 
+_TOO_DEEP = f"this is nested deeper than {MAX_DEPTH} levels", "is this the right file?"
+
 
 def parse_yaml(text: str, file: str, diagnostics: Diagnostics) -> YamlNode | None:
     """The only document in ``text``, or None after reporting mistakes.  ``file`` is the file name in its positions.
@@ -101,6 +103,9 @@ def _report_syntax(error: yaml.MarkedYAMLError, text: str, file: str, diagnostic
         diagnostics.error("yaml-syntax", span, mistake.message, hint=mistake.hint)
         return
     problem = (error.problem or str(error)).replace("\n", " ")
+    if problem == "exceeded maximum nesting depth":  # of PyYAML 6.0.4, which reads ahead
+        diagnostics.error("yaml-depth", Span(file, line, column), _TOO_DEEP[0], hint=_TOO_DEEP[1])
+        return
     notes = []
     if error.context and error.context_mark and error.context_mark is not mark:
         where = Span(file, error.context_mark.line + 1, error.context_mark.column + 1)
@@ -173,8 +178,7 @@ class _Builder:
     def _begin(self, event: yaml.CollectionStartEvent) -> bool:
         """Opens a map or a list.  False after an error."""
         if len(self.stack) >= MAX_DEPTH:
-            message = f"this is nested deeper than {MAX_DEPTH} levels"
-            return self._refuse(event, "yaml-depth", message, "is this the right file?")
+            return self._refuse(event, "yaml-depth", *_TOO_DEEP)
         if self.stack and self.stack[-1].mapping and self.stack[-1].key is None:
             message = "a key must be a word, not a list or a map"
             return self._refuse(event, "yaml-key", message, "put it in quotes if it is meant as text")

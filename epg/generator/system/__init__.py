@@ -38,6 +38,8 @@ class System(Protocol):
     ``SHARES_PORTS``: the option SO_REUSEADDR only lets a program have a port again at once.
     """
 
+    NAME: str
+    """"linux", "macos" or "windows"."""
     END_SIGNALS: tuple[int, ...]
     NOT_IN_PROJECTS: str
     SHARES_PORTS: bool

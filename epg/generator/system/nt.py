@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 _CTRL_BREAK = 1
+NAME = "windows"
 END_SIGNALS = (signal.SIGTERM, getattr(signal, "SIGBREAK", signal.SIGTERM))  # SIGBREAK: also the end of the window
 NOT_IN_PROJECTS = "[#<>?]"
 SHARES_PORTS = False  # another program could then take over the port

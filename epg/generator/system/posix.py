@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+NAME = "macos" if sys.platform == "darwin" else "linux"
 END_SIGNALS = (signal.SIGTERM, signal.SIGHUP)
 NOT_IN_PROJECTS = r'[#<>?:;"\\]'
 SHARES_PORTS = True

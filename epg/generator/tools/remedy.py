@@ -7,7 +7,7 @@ import re
 import shutil
 from collections.abc import Mapping
 
-from epg.generator.system import here
+from epg.generator.install import privileged, system
 from epg.generator.tools.find_tool import Finding, Surroundings, find_tool
 from epg.generator.tools.tools import Tool
 
@@ -33,22 +33,30 @@ def get_it(tool: Tool, where: Surroundings, tools: Mapping[str, Tool]) -> str:
 
     CMake does not wrap a line of a message that begins with blanks.
     """
-    return f"Get it:\n  {command_for(tool, where, tools)}"
+    return "Get it:\n  " + command_for(tool, where, tools).replace("\n", "\n  ")
 
 
 def command_for(tool: Tool, where: Surroundings, tools: Mapping[str, Tool]) -> str:
-    """The command that installs ``tool``.  It can contain the paths of EPG's cache and of other ``tools``."""
+    """The command that installs ``tool``.  It can contain the paths of EPG's cache and of other ``tools``.
+
+    On Windows it has a line for each program, because PowerShell 5.1 does not know ``&&``, and no ``~``.
+    """
     manager = package_manager()
     command = tool.get.get(manager) if manager else None
     prefix = privileged(manager) if command else ""
 
-    def folder(match: re.Match[str]) -> str:
-        path = where.cache.as_posix() if match[1] == "cache" else _folder_of(tools[match[1]], where)
+    def quoted(path: str) -> str:
         # A shell also accepts quotes around a part of a word.
         return f'"{path}"' if " " in path else path
 
+    def folder(match: re.Match[str]) -> str:
+        return quoted(where.cache.as_posix() if match[1] == "cache" else _folder_of(tools[match[1]], where))
+
     names = "|".join(("cache", *map(re.escape, tools)))
-    return prefix + re.sub(rf"\{{({names})\}}", folder, command or tool.get["any"])
+    text = prefix + re.sub(rf"\{{({names})\}}", folder, command or tool.get["any"])
+    if system() != "windows":
+        return text
+    return re.sub(r"(?<= )~(?=/)", lambda _: quoted(where.home.as_posix()), text).replace(" && ", "\n")
 
 
 def _folder_of(tool: Tool, where: Surroundings) -> str:
@@ -60,10 +68,7 @@ def _folder_of(tool: Tool, where: Surroundings) -> str:
 
 
 def package_manager() -> str:
-    """The package manager of this computer, or ""."""
+    """The package manager of this computer, or "".  Windows 11 always has winget."""
+    if system() == "windows":
+        return "winget"
     return next((name for name, program in MANAGERS.items() if shutil.which(program)), "")
-
-
-def privileged(manager: str) -> str:
-    """The prefix with which a command of this package manager runs as the administrator: "sudo " or ""."""
-    return "" if here.is_administrator() or manager in ("brew", "winget") else "sudo "

@@ -13,6 +13,7 @@ import tty
 from collections.abc import Callable
 from pathlib import Path
 
+from epg.generator.install import remedy
 from epg.live.ports import PortError, full, gone, missing, wrong_rate
 
 
@@ -82,10 +83,7 @@ class PosixPort:
         if error.errno == errno.ENOENT:
             return missing(path)
         if error.errno == errno.EACCES:
-            return PortError(
-                f"you must not use {path}",
-                "add yourself to its group: sudo usermod -aG dialout $USER, then log in again",
-            )
+            return PortError(f"you must not use {path}", remedy("port access"))
         if error.errno == errno.EBUSY:
             return self._taken()
         return PortError(f"{path} cannot be opened: {error.strerror}", f"name a serial port, such as {self._example}")
