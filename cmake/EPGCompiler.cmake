@@ -2,6 +2,42 @@
 # Compiler options of EPG's libraries, of generated code and of models.  The project around EPG may have any options:
 # with them, the controller still computes the same bits on every processor, and is still optimised.
 
+# _epg_check_compiler()
+#
+# Stops with an error if the generator or the compiler of this build is Microsoft's, or behaves like it.  On Windows CMake
+# takes these if no other generator is named.  Before project(), also if this computer has no C compiler.
+function(_epg_check_compiler)
+  get_property(languages GLOBAL PROPERTY ENABLED_LANGUAGES)
+  set(problem "")
+  if(CMAKE_HOST_WIN32 AND CMAKE_GENERATOR MATCHES "^(NMake|Visual Studio|Borland|Watcom)")
+    set(problem "CMake uses the generator '${CMAKE_GENERATOR}', whose compiler cannot build EPG's libraries.")
+  elseif("${CMAKE_C_COMPILER_ID};${CMAKE_C_SIMULATE_ID}" MATCHES "MSVC")
+    set(problem "the compiler ${CMAKE_C_COMPILER} cannot build EPG's libraries: MSVC, and Clang in its place, are not supported.")
+  elseif(NOT languages AND NOT CMAKE_C_COMPILER AND NOT CMAKE_TOOLCHAIN_FILE AND "$ENV{CC}" STREQUAL "")
+    find_program(compiler NAMES cc gcc clang NO_CACHE)
+    if(NOT compiler)
+      _epg_tools_of_project(needed)
+      if(NOT "arm_gcc" IN_LIST needed) # it compiles the images
+        set(problem "this computer has no C compiler.")
+      endif()
+    endif()
+  endif()
+  if(problem STREQUAL "")
+    return()
+  endif()
+  _epg_search_tools(answer c_compiler build_program)
+  _epg_find_sdk(compiler c_compiler)
+  set(text "EPG: ${problem} ${compiler_REMEDY}\n")
+  if(CMAKE_HOST_WIN32)
+    _epg_find_sdk(ninja build_program)
+    string(APPEND text "Ninja starts the compiler. ${ninja_REMEDY}\n")
+    string(APPEND text "Then open a new terminal, and configure in an empty build folder:\n  cmake -B build -G Ninja -DCMAKE_C_COMPILER=gcc")
+  else()
+    string(APPEND text "Then configure again.")
+  endif()
+  message(FATAL_ERROR "${text}")
+endfunction()
+
 # _epg_compiler_options(<target>)
 #
 # Sets the options of a CMake target whose sources are EPG's, generated, or a model's.

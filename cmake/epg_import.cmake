@@ -8,8 +8,8 @@
 #   2. EPG_DIR, a variable of CMake or of the environment: the folder of EPGConfig.cmake;
 #   3. the modules of Zephyr that ZEPHYR_MODULES, EXTRA_ZEPHYR_MODULES or ZEPHYR_EXTRA_MODULES name;
 #   4. the project epg of the west workspace, if west configures;
-#   5. an installed Python package: that of Python3_EXECUTABLE, else of python3 or python on the PATH, else of the
-#      program epg;
+#   5. an installed Python package: that of Python3_EXECUTABLE, else of python3 or python on the PATH, else of py of
+#      Windows, else of the program epg;
 #   6. CMake's own search.
 #
 # It works before and after project().  It also works with a toolchain file that confines find_package() to a sysroot, as
@@ -73,7 +73,7 @@ if(NOT EPG_DIR AND WEST_PYTHON)
   endif()
 endif()
 if(NOT EPG_DIR)
-  foreach(_epg_command "${Python3_EXECUTABLE};-m;epg" "${Python_EXECUTABLE};-m;epg" "python3;-m;epg" "python;-m;epg" epg)
+  foreach(_epg_command "${Python3_EXECUTABLE};-m;epg" "${Python_EXECUTABLE};-m;epg" "python3;-m;epg" "python;-m;epg" "py;-m;epg" epg)
     if(NOT _epg_command MATCHES "^;")
       execute_process(COMMAND ${_epg_command} --cmake-dir
         OUTPUT_VARIABLE _epg_folder OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE _epg_status)
@@ -86,10 +86,16 @@ if(NOT EPG_DIR)
 endif()
 find_package(EPG CONFIG QUIET NO_CMAKE_FIND_ROOT_PATH)
 if(NOT EPG_FOUND)
+  set(_epg_activate ". ~/epg-environment/bin/activate")
+  set(_epg_install "python3 -m venv ~/epg-environment && . ~/epg-environment/bin/activate && pip install <folder of EPG>")
+  if(CMAKE_HOST_WIN32)
+    set(_epg_activate "%USERPROFILE%\\epg-environment\\Scripts\\activate")
+    set(_epg_install "py -m pip install <folder of EPG>")
+  endif()
   message(FATAL_ERROR "EPG was not found. ${EPG_NOT_FOUND_MESSAGE}\n"
-    "If it is installed in a virtual environment, activate that first:\n  . ~/epg-environment/bin/activate\n"
+    "If it is installed in a virtual environment, activate that first:\n  ${_epg_activate}\n"
     "Else install it from its folder (a checkout; EPG is not on PyPI):\n"
-    "  python3 -m venv ~/epg-environment && . ~/epg-environment/bin/activate && pip install <folder of EPG>\n"
+    "  ${_epg_install}\n"
     "or name the folder:\n  cmake -DEPG_PATH=<folder of EPG> ...")
 endif()
 set(EPG_IMPORTED_DIR "${EPG_DIR}" CACHE INTERNAL "The EPG that epg_import.cmake has found")

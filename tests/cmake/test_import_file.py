@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from epg.generator.install import ACTIVATE, install_command
+from epg.generator.install import ACTIVATE, REMEDIES, install_command
 from tests.cmake.project import CMAKE_DIR
 
 PROJECT = """cmake_minimum_required(VERSION 3.22...3.31)
@@ -160,6 +160,20 @@ def test_nothing_found(user: User) -> None:
     assert "EPG was not found. If it is installed in a virtual environment, activate that first:" in message
     assert f" {ACTIVATE} Else install it from its folder" in message
     assert f" {install_command()} or name the folder: cmake -DEPG_PATH=<folder of EPG> ..." in message
+
+
+def test_nothing_found_on_windows(user: User) -> None:
+    project = (user.source / "CMakeLists.txt").read_text()
+    (user.source / "CMakeLists.txt").write_text(project.replace("include", "set(CMAKE_HOST_WIN32 TRUE)\ninclude", 1))
+    message = user.configure(check=False)
+    assert r" %USERPROFILE%\epg-environment\Scripts\activate Else install it" in message
+    assert f" {REMEDIES['epg']['windows'].format(folder='<folder of EPG>')} or name the folder:" in message
+
+
+def test_py_of_windows(user: User) -> None:
+    installed = user.checkout("installed")
+    user.program("py", installed, "-m epg --cmake-dir")
+    assert f"EPG of {installed}/cmake\n" in user.configure()
 
 
 def test_a_wrong_path_is_named(user: User) -> None:

@@ -280,6 +280,71 @@ def test_a_target_before_project(robot: Project) -> None:
     assert "Write project(<name> LANGUAGES C) before the call of EPG." in text
 
 
+def test_a_build_folder_whose_path_is_too_long_for_windows(tmp_path: Path) -> None:
+    robot = Project(tmp_path / "/".join(["a long folder"] * 12), "robot")
+    robot.edit("CMakeLists.txt", "find_package(EPG REQUIRED)", "set(CMAKE_HOST_WIN32 TRUE)\nfind_package(EPG REQUIRED)")
+    text = " ".join(robot.configure().split())
+    assert f"EPG: the path of the build folder has {len(str(robot.build_folder))} characters" in text
+    assert "choose another build folder: cmake -B C:/build ..." in text
+
+
+@pytest.mark.parametrize(
+    ("settings", "problem"),
+    [
+        (
+            'set(CMAKE_HOST_WIN32 TRUE)\nset(CMAKE_GENERATOR "NMake Makefiles")\n',
+            "EPG: CMake uses the generator 'NMake Makefiles', whose compiler cannot build EPG's libraries.",
+        ),
+        (
+            'set(CMAKE_HOST_WIN32 TRUE)\nset(CMAKE_GENERATOR "Visual Studio 17 2022")\n',
+            "EPG: CMake uses the generator 'Visual Studio 17 2022', whose compiler cannot build EPG's libraries.",
+        ),
+        ("set(CMAKE_C_COMPILER_ID MSVC)\n", "MSVC, and Clang in its place, are not supported."),
+        (
+            "set(CMAKE_C_COMPILER_ID Clang)\nset(CMAKE_C_SIMULATE_ID MSVC)\n",
+            "MSVC, and Clang in its place, are not supported.",
+        ),
+    ],
+)
+@pytest.mark.parametrize("before", ["find_package(EPG REQUIRED)", "epg_add_target("])
+def test_compilers_of_microsoft(before: str, settings: str, problem: str, robot: Project) -> None:
+    robot.edit("CMakeLists.txt", before, f"{settings}{before}")
+    output = robot.fails_to_configure()
+    text = " ".join(output.split())
+    assert output.count("CMake Error") == 1, output
+    assert f"{problem} Get it: " in text
+    if "WIN32" in settings:
+        assert "Ninja starts the compiler. Get it: " in text
+        assert "configure in an empty build folder: cmake -B build -G Ninja -DCMAKE_C_COMPILER=gcc" in text
+
+
+@pytest.mark.parametrize(("target", "refused"), [("host_jiwy.tcf", True), ("rpi_pico_bare_metal_jiwy.tcf", False)])
+def test_a_computer_without_a_compiler(target: str, refused: bool, robot: Project, tmp_path: Path) -> None:
+    """Before project(), which would say less.  Images of microcontrollers do not need this compiler."""
+    (tmp_path / "programs").mkdir()
+    for name in ("cmake", "ninja", "make"):
+        program = shutil.which(name)
+        if program:
+            (tmp_path / "programs" / name).symlink_to(program)
+    robot.environment["PATH"] = str(tmp_path / "programs")
+    robot.environment["CC"] = ""
+    robot.edit("CMakeLists.txt", "project(robot LANGUAGES C)", "find_package(EPG REQUIRED)\nproject(robot LANGUAGES C)")
+    robot.edit("CMakeLists.txt", "robot.tcf", target)
+    text = " ".join(robot.fails_to_configure().split())
+    assert ("EPG: this computer has no C compiler. Get it: " in text) == refused, text
+
+
+def test_the_link_to_the_microsoft_store_is_not_python(robot: Project, tmp_path: Path) -> None:
+    stub = tmp_path / "Microsoft/WindowsApps/python3"
+    stub.parent.mkdir(parents=True)
+    stub.write_text("#!/bin/sh\necho 'Python was not found; run without arguments to install' >&2\nexit 9\n")
+    stub.chmod(0o755)
+    robot.edit("CMakeLists.txt", "find_package(EPG REQUIRED)", "set(CMAKE_HOST_WIN32 TRUE)\nfind_package(EPG REQUIRED)")
+    text = " ".join(robot.fails_to_configure(f"-DPython3_EXECUTABLE={stub}").split())
+    assert f"This is not Python: it is Windows' link to the Microsoft Store: {stub}" in text
+    assert "Get it, and open a new terminal: winget install Python.Python.3.13" in text
+
+
 @pytest.mark.parametrize("system", ["Generic", "PICO"])
 def test_a_host_target_in_a_project_for_a_microcontroller(robot: Project, system: str) -> None:
     (robot.source / "cmake/Platform").mkdir(parents=True)

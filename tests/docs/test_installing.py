@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from epg.generator.install import ACTIVATE, install_command
+from epg.generator.install import ACTIVATE, REMEDIES, install_command
 from tests.checkout import ROOT, listed
 
 TEXTS = ("*.md", "*.cmake", "*.j2", "*.py", "*.json", "*.yaml", "*.txt", "*.cmd", "*.js")
@@ -31,7 +31,9 @@ def test_nobody_is_told_to_install_epg_by_its_name() -> None:
 def test_the_command_is_the_same(name: str) -> None:
     text = (ROOT / name).read_text(encoding="utf-8")
     assert install_command() in text and ACTIVATE in text
+    assert REMEDIES["epg"]["windows"].format(folder="<folder of EPG>") in text
 
 
 def test_the_readme_installs_its_own_folder() -> None:
-    assert f"\n{install_command('.')}\n" in (ROOT / "README.md").read_text(encoding="utf-8")
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert f"\n{install_command('.')}\n" in text and f"\n{REMEDIES['epg']['windows'].format(folder='.')}\n" in text
