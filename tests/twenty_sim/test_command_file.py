@@ -37,11 +37,11 @@ class Computer:
         self.environment = {**os.environ, "WINEPREFIX": str(folder / "wine"), "WINEDEBUG": "-all"}
         self.environment.pop("XXSIM_SCRIPT_MODE", None)
 
-    def install(self, program: str, first_words: str) -> None:
+    def install(self, program: str, first_words: str, folder: Path | None = None) -> None:
         """A program that acts only if its first arguments are ``first_words``."""
         checks = "".join(f'if not "%{i}"=="{word}" exit /b 1\r\n' for i, word in enumerate(first_words.split(), 1))
         text = f"@echo off\r\n{checks}echo {program} %*>> {windows(self.notes)}\r\nexit /b 0\r\n"
-        (self.programs / f"{program}.bat").write_bytes(text.encode())
+        ((folder or self.programs) / f"{program}.bat").write_bytes(text.encode())
 
     def run(
         self, *arguments: str, script: bool = False, folder: Path | None = None
@@ -78,6 +78,14 @@ def computer(tmp_path: Path) -> Iterator[Computer]:
 def test_epg_is_started_for_the_folder_of_the_export(computer: Computer) -> None:
     done = computer.run(script=True)
     assert done.returncode == 4 and "EPG is not installed" in done.stdout
+    assert '  py -m pip install "folder of EPG"\n' in done.stdout.replace("\r", "")
+    (home,) = (each for each in (computer.programs.parent / "wine/drive_c/users").iterdir() if each.name != "Public")
+    scripts = home / "epg-environment/Scripts"
+    scripts.mkdir(parents=True)
+    computer.install("epg", "", scripts)
+    assert computer.run(script=True).returncode == 0
+    assert computer.noted() == ['epg exported "."']
+    computer.notes.unlink()
     computer.install("py", "-3 -m epg")
     assert computer.run(script=True).returncode == 0
     assert computer.noted() == ['py -3 -m epg exported "."']

@@ -12,14 +12,19 @@ if not "%~1"=="window" if not "%XXSIM_SCRIPT_MODE%"=="1" (
 )
 set "epg_option="
 if "%~1"=="window" set "epg_option= --connect"
+rem docs/installing.md puts EPG into Python, or into the environment of this name.
 set "epg_command="
+call "%USERPROFILE%\epg-environment\Scripts\epg" --version >nul 2>nul
+if not errorlevel 1 set "epg_command="%USERPROFILE%\epg-environment\Scripts\epg""
 call py -3 -m epg --version >nul 2>nul
 if not errorlevel 1 set "epg_command=py -3 -m epg"
 call epg --version >nul 2>nul
 if not errorlevel 1 set "epg_command=epg"
 if not defined epg_command (
     echo EPG is not installed on this computer, or not in the PATH.
-    echo Install Python from python.org, then EPG, and start this file again:
+    echo Type these commands, the second one with the folder of EPG, and start this file again:
+    echo   winget install Python.Python.3.13
+    echo   py -m pip install "folder of EPG"
     echo "%~f0"
     if exist "%~dp0ModelConfiguration.xml" echo Until then, ModelConfiguration.xml in this folder contains the path of your model file and your 20-sim license.
     exit /b 4
