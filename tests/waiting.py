@@ -11,6 +11,7 @@ True
 
 from __future__ import annotations
 
+import cProfile
 import os
 import select
 import time
@@ -20,8 +21,7 @@ from typing import TypeVar
 
 T = TypeVar("T")
 
-PATIENCE = 30.0
-"""Seconds after which a test gives up."""
+PATIENCE = 30.0  # seconds after which a test gives up
 
 
 def until(happens: Callable[[], T], what: object = "", seconds: float = PATIENCE, pause: float = 0.01) -> T:
@@ -29,18 +29,15 @@ def until(happens: Callable[[], T], what: object = "", seconds: float = PATIENCE
 
     If it does not happen, the error shows ``what``, or the result of ``what`` if that is a function.
     """
-    end = time.monotonic() + seconds
+    end = time.monotonic() + seconds  # the patience of all tests
     while not (found := happens()):
-        assert time.monotonic() < end, what() if callable(what) else what or "it does not happen"
-        time.sleep(pause)
+        assert time.monotonic() < end, what() if callable(what) else what or "it does not happen"  # patience
+        time.sleep(pause)  # between two looks
     return found
 
 
 def waited(process: int) -> float:
-    """Seconds for which the threads of a process were ready to run and had no processor, as Linux counts them.
-
-    It is a witness that the computer was late, and not EPG.
-    """
+    """Seconds for which the threads of a process were ready to run and had no processor: a late computer."""
     files = Path(f"/proc/{process}/task").glob("*/schedstat")
     return sum(1e-9 * int(file.read_text().split()[1]) for file in files)
 
@@ -62,10 +59,17 @@ def read_until(terminal: int, *texts: str) -> str:
     return seen
 
 
-def soon(happens: Callable[[], object], seconds: float) -> bool:
+def calls(act: Callable[[], T]) -> tuple[T, int]:
+    """The result of ``act``, and how many functions it has called: its effort, on any computer."""
+    profile = cProfile.Profile()
+    result = profile.runcall(act)
+    return result, sum(entry.callcount for entry in profile.getstats())
+
+
+def soon(happens: Callable[[], object], seconds: float, pause: float = 0.01) -> bool:
     """Returns whether it happens within some seconds."""
     try:
-        until(happens, seconds=seconds)
+        until(happens, seconds=seconds, pause=pause)
     except AssertionError:
         return False
     return True

@@ -63,8 +63,8 @@ def record_at_terminal(target: Target, path: Path, *typed: tuple[float, str], se
         while True:
             if select.select([terminal], [], [], 0.05)[0]:
                 seen += os.read(terminal, 65536).decode("utf-8", "replace")
-                begin = begin or time.monotonic()
-            if left and begin and time.monotonic() - begin > left[0][0]:
+                begin = begin or time.monotonic()  # a user types at these times
+            if left and begin and time.monotonic() - begin > left[0][0]:  # a user types at these times
                 os.write(terminal, left.pop(0)[1].encode() + b"\r")
     os.close(terminal)
     assert os.waitpid(process, 0)[1] == 0, seen[-3000:]

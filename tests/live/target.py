@@ -87,12 +87,13 @@ def client_of(path: Path) -> Iterator[Client]:
 
 def let_pass(client: Client, seconds: float) -> None:
     """Waits until the target has run for some seconds of its own time."""
+    end = now(client) + seconds
+    until(lambda: now(client) > end)
 
-    def now() -> float:
-        return float(dict(words_of(client.command("stats")[0]))["time"])
 
-    end = now() + seconds
-    until(lambda: now() > end)
+def now(client: Client) -> float:
+    """The target's own time in seconds."""
+    return float(dict(words_of(client.command("stats")[0]))["time"])
 
 
 KNOWN = 0.625

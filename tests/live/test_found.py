@@ -69,7 +69,7 @@ def test_targets_are_found_beside_a_silent_board(system: Path, target: Target, s
     own, path = silent
     attach(system, target.port, "2e8a")
     attach(system, path, "0483")
-    begin = time.monotonic()
+    begin = time.monotonic()  # the time that a user waits
     one, two = found.look_at_all({target.port: "Pico", path: "STLINK"}, VENDORS)
     assert time.monotonic() - begin < 2
     assert one.target is not None and (one.target.name, one.device) == ("jiwy", "Pico")

@@ -116,8 +116,8 @@ def test_a_movement_by_hand_ends_with_the_last_command(target: UdpTarget, bad: P
         client.disable()
         for _ in range(20):
             client.move("pwm_pan", 0.1)
-            time.sleep(0.05)
-        released = time.monotonic()
+            time.sleep(0.05)  # the period of the page's commands
+        released = time.monotonic()  # the release, compared with the target's time
         let_pass(client, LATE + 0.3)
     tick = tick_of(target.port)
     trace = target.end()

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from epg.live.client import Client
 from tests.live.target import last_enabled, read_trace, tick_of
-from tests.waiting import soon
+from tests.waiting import until
 
 Trace = list[dict[str, float]]
 
@@ -60,4 +60,4 @@ class UdpTarget:
 
 def is_soon_disabled(client: Client) -> bool:
     """True if the target becomes disabled.  The answer to a stop comes before the next control cycle."""
-    return soon(lambda: "enabled=0" in client.command("stats")[0], 2)
+    return until(lambda: "enabled=0" in client.command("stats")[0], "it stays enabled", 2)

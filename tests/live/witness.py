@@ -21,7 +21,7 @@ CYCLE = 0.001
 
 
 class Span(NamedTuple):
-    """A time in which the actuator was driven, in seconds of :func:`time.monotonic`."""
+    """A time in which the actuator was driven, in seconds of the monotonic clock."""
 
     begin: float
     """The begin of the first cycle that has driven it."""

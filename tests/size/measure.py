@@ -7,8 +7,9 @@ schemas and expected outputs do not count.  The complexity of a function is McCa
 and JavaScript.
 
 A test judges times of the target, or of a simulation.  So the places in sources of tests that read a clock of this
-computer, or that sleep, are counted, too: by their text, also in the tests' helpers and doubles.  A call of ``until()``
-of ``tests/waiting.py`` is not counted: its patience is that for a slow computer, and a test does not judge it.
+computer, or that sleep, are counted, too: by their text, also in helpers and doubles, and each call of ``soon()``.  A
+call of ``until()`` of ``tests/waiting.py`` is not counted: its patience is that for a slow computer, and a test does
+not judge it.
 """
 
 from __future__ import annotations
@@ -87,12 +88,19 @@ def words(names: Iterable[str]) -> int:
     return sum(len((ROOT / name).read_text(encoding="utf-8").split()) for name in names if name.endswith(".md"))
 
 
-def real_time(names: Iterable[str], kind: str, root: Path = ROOT) -> Counter[str]:
-    """The places in sources of tests that read a clock of this computer (``clocks``) or sleep (``sleeps``), by file."""
+def real_time(names: Iterable[str], kind: str, root: Path = ROOT) -> Iterator[tuple[str, str]]:
+    """The places in sources of tests that read a clock of this computer (``clocks``) or sleep (``sleeps``).
+
+    Each as ``file:line`` with its reason: the comment in this line, or in the one above.
+    """
     pattern = re.compile(LIMITS["real_time"][kind]["pattern"])
     folders = ((name, name.split("/")[:3]) for name in names if Path(name).suffix in LANGUAGES)
-    sources = [name for name, above in folders if "tests" in above and "size" not in above]
-    return Counter({name: len(pattern.findall((root / name).read_text(encoding="utf-8"))) for name in sources})
+    for name in [name for name, above in folders if "tests" in above and "size" not in above]:
+        above = ""
+        for number, line in enumerate((root / name).read_text(encoding="utf-8").splitlines(), start=1):
+            reason = re.search(r"\s(?:#|//|/\*) (.+)", line) or re.match(r"\s*(?:#|//|/\*|\*) (.+)", above)
+            yield from [(f"{name}:{number}", reason[1] if reason else "")] * len(pattern.findall(line))
+            above = line
 
 
 def files_alone() -> int:

@@ -3,7 +3,7 @@
 
 It passes bytes on in both directions.  SIGUSR1: it sends garbage in both directions instead, as much as both ends take.
 SIGUSR2: it sends garbage between the bytes that it passes on.  SIGHUP: it passes bytes on to the target :data:`DELAY`
-later.  It prints "ready", and at each signal the time of :func:`time.monotonic` from which on it acts so.
+later.  It prints "ready", and at each signal the monotonic time from which on it acts so.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def main(target: Path, own: Path) -> None:
     def become(new: str) -> None:
         nonlocal mode
         mode = new
-        print(time.monotonic(), flush=True)
+        print(time.monotonic(), flush=True)  # the fault's time, compared with the target's
 
     signal.signal(signal.SIGUSR1, lambda *_: become("garbage"))
     signal.signal(signal.SIGUSR2, lambda *_: become("between"))
@@ -51,13 +51,14 @@ def main(target: Path, own: Path) -> None:
         noisy = mode in ("garbage", "between")
         writable = [file for file in other if waiting[file] or noisy]
         readable, ready, _ = select.select(list(other), writable, [], 0.001 if under_way else 0.1)
+        now = time.monotonic()  # the delay of a slow line
         for file in readable:
             data = os.read(file, 4096)
             if mode == "slow" and other[file] == board:
-                under_way.append((time.monotonic() + DELAY, data))
+                under_way.append((now + DELAY, data))
             elif mode != "garbage" and len(waiting[other[file]]) < 65536:
                 waiting[other[file]] += data
-        while under_way and under_way[0][0] <= time.monotonic():
+        while under_way and under_way[0][0] <= now:
             waiting[board] += under_way.popleft()[1]
         for file in ready:
             data = waiting[file] if mode != "garbage" else b""

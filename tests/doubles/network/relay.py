@@ -33,16 +33,18 @@ def main(target: int, loss: float, copies: float) -> None:
     due: list[tuple[float, int, socket.socket, tuple[str, int] | None, bytes]] = []
 
     def pass_on(sender: socket.socket, address: tuple[str, int] | None, data: bytes) -> None:
-        now = time.monotonic()
         if chance.random() >= loss:
             heapq.heappush(due, (now + chance.uniform(0, DELAY), next(order), sender, address, data))
         if chance.random() < copies:
             late = chance.choice((chance.uniform(0, DELAY), LATE))
             heapq.heappush(due, (now + late, next(order), sender, address, data))
 
+    now = 0.0
     while True:
-        wait = max(0.0, due[0][0] - time.monotonic()) if due else None
-        for ready in select.select([front, *clients], [], [], wait)[0]:
+        wait = max(0.0, due[0][0] - now) if due else None
+        found = select.select([front, *clients], [], [], wait)[0]
+        now = time.monotonic()  # the delay of the network
+        for ready in found:
             try:
                 data, address = ready.recvfrom(65536)
             except ConnectionRefusedError:
@@ -55,7 +57,7 @@ def main(target: int, loss: float, copies: float) -> None:
                 back.connect((HERE, target))
                 backs[address], clients[back] = back, address
             pass_on(backs[address], None, data)
-        while due and due[0][0] <= time.monotonic():
+        while due and due[0][0] <= now:
             _, _, sender, address, data = heapq.heappop(due)
             try:
                 sender.sendto(data, address) if address is not None else sender.send(data)
