@@ -2,7 +2,7 @@
 // The dialog in which the user moves the project to another target: first the choice, then the list of all changes.
 
 import { configurationCards } from "./configurations.js";
-import { closeDialog, openDialog } from "./dialog.js";
+import { closeDialog, dialogButtons, openDialog } from "./dialog.js";
 import { h } from "./dom.js";
 import { icon } from "./icons.js";
 import { shortFile } from "./problems.js";
@@ -27,17 +27,10 @@ const inUse = () => current().configurations.find((each) => each.chosen)?.name;
 function choice() {
   return [
     configurationCards(current(), (each) => each.possible),
-    h(
-      "div.buttons.sticky",
-      { key: "buttons" },
+    dialogButtons(
+      waiting ? "Comparing…" : "Show changes",
+      { disabled: !ui.chosen || ui.chosen === inUse() || waiting, onclick: ask },
       h("p.muted", "The next step shows what changes, and what stays."),
-      h("span.space"),
-      h("button", { type: "button", onclick: closeDialog }, "Cancel"),
-      h(
-        "button",
-        { type: "button", class: "primary", disabled: !ui.chosen || ui.chosen === inUse() || waiting, onclick: ask },
-        waiting ? "Comparing…" : "Show changes",
-      ),
     ),
   ];
 }
@@ -70,14 +63,11 @@ function changes() {
           refused.hint && ` ${refused.hint}`,
         )
       : listed(move),
-    h(
-      "div.buttons.sticky",
-      { key: "buttons" },
+    dialogButtons(
+      "Change target",
+      { disabled: Boolean(refused), onclick: change },
       h("button", { type: "button", onclick: back }, "Back"),
       h("p.muted", "One step, which you can undo. Files are written when you save."),
-      h("span.space"),
-      h("button", { type: "button", onclick: closeDialog }, "Cancel"),
-      h("button", { type: "button", class: "primary", disabled: Boolean(refused), onclick: change }, "Change target"),
     ),
   ];
 }

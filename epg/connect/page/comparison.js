@@ -2,10 +2,10 @@
 // "Compare with simulation": the simulated robot gets the same setpoints as the running target since it was enabled.
 
 import { begin, failureText, logPart, messagesPart, outcomePart, running, stepText } from "./activity.js";
-import { drawCurves, legend } from "./curves.js";
+import { curvesPart } from "./curves.js";
 import { h } from "./dom.js";
 import { colour, dash } from "./plots.js";
-import { savePng } from "./save.js";
+import { pngButton } from "./save.js";
 import { getJson } from "./server.js";
 import { draw } from "./ui.js";
 
@@ -95,23 +95,8 @@ function resultPart(target, { changed }, chosen) {
         { key: "changed" },
         `These parameters were changed in the target only: ${changed.join(", ")}. The simulation has those of the bindings.`,
       ),
-    legend(curves),
-    h("div.curves", {
-      key: "curves",
-      keep: true,
-      role: "img",
-      "aria-label": `Target and simulation: ${curves.map((each) => each.name).join(", ")}`,
-      shown: (place) => drawCurves(place, shown),
-    }),
-    h(
-      "p",
-      { key: "save" },
-      h(
-        "button",
-        { onclick: (event) => savePng(event.target.closest(".compared"), curves, `${target.name}-comparison.png`) },
-        "Save as PNG",
-      ),
-    ),
+    curvesPart(`Target and simulation: ${curves.map((each) => each.name).join(", ")}`, shown),
+    h("p", { key: "save" }, pngButton(".compared", curves, `${target.name}-comparison.png`)),
   );
 }
 

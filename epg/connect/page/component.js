@@ -2,7 +2,7 @@
 // The tab with the parameters of one component, and the buttons that add, copy, rename and remove components.
 
 import { addComponent, copyComponent, removeComponent, renameComponent } from "./component_dialogs.js";
-import { h, id } from "./dom.js";
+import { h, id, option } from "./dom.js";
 import { formFields, formNotes, oneOfNotes } from "./form.js";
 import { inline, shortFile } from "./problems.js";
 import { attempt, change, say, ui } from "./ui.js";
@@ -30,7 +30,7 @@ export function componentPanel(state) {
             value: name,
             onchange: (event) => change({ component: event.target.value }),
           },
-          names.map((each) => h("option", { key: each, value: each }, each)),
+          names.map((each) => option(each)),
         ),
       ],
       button("Copy", copyComponent, names.length > 0),

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The dialogs that add, copy, rename and remove a component.
 
-import { closeDialog, openDialog } from "./dialog.js";
-import { h, id, textField } from "./dom.js";
+import { closeDialog, dialogButtons, openDialog } from "./dialog.js";
+import { h, id, refusalPart, textField } from "./dom.js";
 import { control, groupSwitch, hint, label, oneOfNotes, words } from "./form.js";
 import { act, current } from "./server.js";
 import { draw, openTab, say, ui } from "./ui.js";
@@ -64,21 +64,9 @@ export function addComponent() {
       oneOfNotes(form),
       alternatives.map(ask),
       form.fields.filter(isPins).map(ask),
-      error &&
-        h(
-          "p.refusal",
-          { id: "add-refusal", role: "alert", tabindex: "-1" },
-          error.message,
-          error.hint ? h("span.hint", error.hint) : null,
-        ),
+      refusalPart(error, { id: "add-refusal", tabindex: "-1" }),
       h("p.muted", "All other parameters have defaults. You can change them afterwards."),
-      h(
-        "div.buttons",
-        h("button", { type: "button", onclick: () => back() }, "Other kind"),
-        h("span.space"),
-        h("button", { type: "button", onclick: closeDialog }, "Cancel"),
-        h("button", { type: "submit", class: "primary" }, "Add"),
-      ),
+      dialogButtons("Add", {}, h("button", { type: "button", onclick: () => back() }, "Other kind")),
     );
   });
 
@@ -238,13 +226,8 @@ function nameDialog(action, title, submit, proposed, component, notes) {
         },
       }),
       notes.filter(Boolean).map((note) => h("p.muted", note)),
-      error && h("p.refusal", { role: "alert" }, error.message, error.hint ? h("span.hint", error.hint) : null),
-      h(
-        "div.buttons",
-        h("span.space"),
-        h("button", { type: "button", onclick: closeDialog }, "Cancel"),
-        h("button", { type: "submit", class: "primary" }, submit),
-      ),
+      refusalPart(error),
+      dialogButtons(submit),
     ),
   );
 }
@@ -275,13 +258,8 @@ export function removeComponent(component) {
       ),
       files.length > 0 && h("p", `These files name it, too, and are not changed: ${files.join(", ")}.`),
       h("p.muted", "One step of Undo brings everything back."),
-      error && h("p.refusal", { role: "alert" }, error.message, error.hint ? h("span.hint", error.hint) : null),
-      h(
-        "div.buttons",
-        h("span.space"),
-        h("button", { type: "button", onclick: closeDialog }, "Cancel"),
-        h("button", { type: "button", class: "primary", autofocus: true, onclick: apply }, "Remove"),
-      ),
+      refusalPart(error),
+      dialogButtons("Remove", { autofocus: true, onclick: apply }),
     ];
   });
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cards of the configurations that can be chosen, grouped by robot and board, with search and filter.
 
-import { h, id, plural, textField } from "./dom.js";
+import { h, id, listField, option, plural, textField } from "./dom.js";
 import { icon } from "./icons.js";
 import { wiringPicture } from "./pictures.js";
 import { change, ui } from "./ui.js";
@@ -82,15 +82,11 @@ function filters(robots) {
       initial: ui.filter.text,
       oninput: (event) => filter({ text: event.target.value }),
     }),
-    h(
-      "div.field",
-      h("label", { for: "target-robot" }, "Robot"),
-      h(
-        "select",
-        { id: "target-robot", value: ui.filter.robot, onchange: (event) => filter({ robot: event.target.value }) },
-        h("option", { key: "", value: "" }, "all"),
-        robots.map((robot) => h("option", { key: `:${robot}`, value: robot }, robot)),
-      ),
+    listField(
+      "target-robot",
+      "Robot",
+      { value: ui.filter.robot, onchange: (event) => filter({ robot: event.target.value }) },
+      [option("", "all"), robots.map((robot) => option(robot))],
     ),
     h(
       "label.check",

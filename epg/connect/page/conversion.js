@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The dialog of one wire: scale, offset, limits, unit.
 
-import { closeDialog, openDialog } from "./dialog.js";
-import { h, id, textField } from "./dom.js";
+import { closeDialog, dialogButtons, openDialog } from "./dialog.js";
+import { h, id, refusalPart, textField } from "./dom.js";
 import { isError } from "./problems.js";
 import { act, current } from "./server.js";
 import { draw, say, ui } from "./ui.js";
@@ -75,28 +75,20 @@ export function editConversion(port, n) {
         field("unit", "Unit", end.unit, "unit of the value in the model, if it differs from the port's unit"),
       ),
       h("p.preview", { role: "status" }, preview(found, end, typed || fieldsOf(end))),
-      error && h("p.refusal", { role: "alert" }, error.message, error.hint ? h("span.hint", error.hint) : null),
-      h(
-        "div.buttons",
-        h(
-          "button",
-          {
-            type: "button",
-            disabled: readonly,
-            onclick: () => {
-              closeDialog();
-              replaceEnd(port, n, null);
-              document.getElementById(id("ends", port, 0))?.focus();
-            },
-          },
-          "Remove wire",
-        ),
-        h("span.space"),
-        h("button", { type: "button", onclick: closeDialog }, "Cancel"),
-        h("button", { type: "submit", class: "primary", disabled: readonly }, "Apply"),
+      refusalPart(error),
+      dialogButtons(
+        "Apply",
+        { disabled: readonly },
+        h("button", { type: "button", disabled: readonly, onclick: () => remove(port, n) }, "Remove wire"),
       ),
     );
   });
+}
+
+function remove(port, n) {
+  closeDialog();
+  replaceEnd(port, n, null);
+  document.getElementById(id("ends", port, 0))?.focus();
 }
 
 const fieldsOf = ({ scale, offset, limits, unit }) => ({

@@ -17,7 +17,7 @@ const drawn = new WeakMap();
  * @param {HTMLElement} place
  * @param {Curves} shown
  */
-export function drawCurves(place, shown) {
+function drawCurves(place, shown) {
   if (!place.clientWidth) return;
   const known = drawn.get(place);
   if (known?.shown === shown) {
@@ -57,14 +57,22 @@ function drawMark(plot) {
 }
 
 /**
- * The names of curves with their colours.
- * @param {Curve[]} curves
+ * Curves, and their names with their colours.
+ * @param {Curves} shown
  */
-export const legend = (curves) =>
+export const curvesPart = (label, shown) => [
   h(
     "ul.legend",
-    curves.map(({ name, colour, dash }) => h("li", { key: name }, swatch(colour, dash), ` ${name}`)),
-  );
+    shown.curves.map(({ name, colour, dash }) => h("li", { key: name }, swatch(colour, dash), ` ${name}`)),
+  ),
+  h("div.curves", {
+    key: "curves",
+    keep: true,
+    role: "img",
+    "aria-label": label,
+    shown: (place) => drawCurves(place, shown),
+  }),
+];
 
 // A piece of the line of a curve.
 export const swatch = (colour, dash = []) =>

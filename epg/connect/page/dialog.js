@@ -44,6 +44,17 @@ function setOthers(inert) {
   for (const each of document.querySelectorAll(OTHERS)) /** @type {HTMLElement} */ (each).inert = inert;
 }
 
+// The buttons at the end of a dialog: `before`, and on the right "Cancel" and the button that acts.
+export const dialogButtons = (text, attributes = {}, ...before) =>
+  h(
+    "div.buttons",
+    { key: "buttons" },
+    before,
+    h("span.space"),
+    h("button", { type: "button", onclick: closeDialog }, "Cancel"),
+    h("button", { type: attributes.onclick ? "button" : "submit", class: "primary", ...attributes }, text),
+  );
+
 export function drawDialog() {
   const inside = open?.content() ?? null;
   if (inside === null) {

@@ -132,8 +132,8 @@ function disable(button, isDisabled) {
   const keeps = isDisabled && button === document.activeElement;
   button.toggleAttribute("disabled", isDisabled && !keeps);
   button.ariaDisabled = keeps ? "true" : null;
-  if (keeps)
-    button.addEventListener("blur", () => disable(button, Boolean(button.epgAttributes.disabled)), { once: true });
+  const again = () => disable(button, Boolean(button.epgAttributes.disabled));
+  if (keeps) button.addEventListener("blur", again, { once: true });
 }
 
 // True if a button is disabled, also if it still has the focus.
@@ -193,6 +193,33 @@ export function textField(id, label, attributes, hint = null) {
     hint && h("span.hint", { id: `${id}-hint` }, hint),
   );
 }
+
+export const option = (value, text = value) => h("option", { key: `:${value}`, value }, text);
+
+// A list with its label.
+export function listField(id, label, attributes, options) {
+  return h("div.field", { key: id }, h("label", { for: id }, label), h("select", { id, ...attributes }, options));
+}
+
+// The reason why an action was refused.
+/** @param {Refusal | null} error */
+export function refusalPart(error, attributes = {}) {
+  const hint = error?.hint && h("span.hint", error.hint);
+  return error && h("p.refusal", { role: "alert", ...attributes }, error.message, hint);
+}
+
+// A table. Each row is a list of cells, of which each that is not a <th> or <td> comes into a <td>.
+export function table(attributes, caption, head, rows) {
+  const heads = head.map((text) => h("th", { scope: "col" }, text));
+  const row = (cells) =>
+    h(
+      "tr",
+      cells.map((cell) => (["th", "td"].includes(cell?.tag) ? cell : h("td", cell))),
+    );
+  return h("table", attributes, caption, heads.length > 0 && h("thead", h("tr", heads)), h("tbody", rows.map(row)));
+}
+
+export const rowHead = (text) => h("th", { scope: "row" }, text);
 
 export const plural = (number, noun) => `${number} ${noun}${number === 1 ? "" : "s"}`;
 

@@ -2,7 +2,7 @@
 // "Flash": writes the firmware to a board, after the user has confirmed the board and the file.
 
 import { failureText, logPart, messagesPart, outcomePart, running } from "./activity.js";
-import { closeDialog, openDialog } from "./dialog.js";
+import { dialogButtons, openDialog } from "./dialog.js";
 import { h } from "./dom.js";
 import { shortFile } from "./problems.js";
 import { current } from "./server.js";
@@ -57,22 +57,10 @@ function question(replace) {
       "The program that is on the board now is overwritten. Disconnect the supply of the motors first. ",
       "Flash does not enable the target: after its start it is as enable_at_start in the .tcf says.",
     ),
-    h(
-      "div.buttons",
-      { key: "buttons" },
+    dialogButtons(
+      replace ? "Replace the other program" : "Write to this board",
+      { disabled: !board, onclick: () => attempt("flash", { board: board.id, replace }) },
       again,
-      h("span.space"),
-      h("button", { type: "button", onclick: closeDialog }, "Cancel"),
-      h(
-        "button",
-        {
-          type: "button",
-          class: "primary",
-          disabled: !board,
-          onclick: () => attempt("flash", { board: board.id, replace }),
-        },
-        replace ? "Replace the other program" : "Write to this board",
-      ),
     ),
   ];
 }

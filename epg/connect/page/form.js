@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fields of a form: one for each value that a .tcf can have, with its description, its place and its messages.
 
-import { h, id } from "./dom.js";
+import { h, id, option } from "./dom.js";
 import { inline, shortFile } from "./problems.js";
 import { current } from "./server.js";
 import { attempt, openTab, say, ui } from "./ui.js";
@@ -168,10 +168,9 @@ export function control(field, text, attributes) {
   }
   const none = field.default ? `default: ${field.default}` : field.required ? "(choose)" : "(none)";
   const listed = text && !choices.includes(text) ? [text, ...choices] : choices;
-  const option = (value, shown) => h("option", { key: `:${value}`, value }, shown);
   return h("select", { key: "control", value: text, ...attributes }, [
     option("", none),
-    listed.map((each) => option(each, each)),
+    listed.map((each) => option(each)),
   ]);
 }
 

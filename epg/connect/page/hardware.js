@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The table of the pins and peripherals that are assigned to the components.
 
-import { h } from "./dom.js";
+import { h, rowHead, table } from "./dom.js";
 
 const COLUMNS = [
   ["component", "Component"],
@@ -16,9 +16,9 @@ const COLUMNS = [
 export function hardware(state) {
   if (state.hardware.length === 0) return h("p.empty", "The target uses no pins or peripherals.");
   const columns = COLUMNS.filter(([name]) => state.hardware.some((row) => row[name]));
-  const head = columns.map(([, title]) => h("th", { scope: "col" }, title));
+  const head = columns.map(([, title]) => title);
   const [[first], ...others] = columns;
   const cells = (row) => others.map(([name]) => h("td", { class: `column-${name}` }, row[name]));
-  const rows = state.hardware.map((row) => h("tr", h("th", { scope: "row" }, row[first]), cells(row)));
-  return h("table", h("caption.unseen", "Pins and peripherals"), h("thead", h("tr", head)), h("tbody", rows));
+  const rows = state.hardware.map((row) => [rowHead(row[first]), ...cells(row)]);
+  return table({}, h("caption.unseen", "Pins and peripherals"), head, rows);
 }

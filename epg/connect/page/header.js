@@ -4,8 +4,8 @@
 import { running } from "./activity.js";
 import { generate } from "./build.js";
 import { chooseTarget } from "./chooser.js";
-import { closeDialog, openDialog } from "./dialog.js";
-import { h } from "./dom.js";
+import { closeDialog, dialogButtons, openDialog } from "./dialog.js";
+import { h, option } from "./dom.js";
 import { icon } from "./icons.js";
 import { counted, shortFile } from "./problems.js";
 import { current } from "./server.js";
@@ -75,16 +75,10 @@ function askToClose(state) {
   };
   openDialog("close", "Close EPG", () => [
     h("p", "There are unsaved changes. The tab Changes shows them."),
-    h(
-      "div.buttons",
+    dialogButtons(
+      "Save and close",
+      { onclick: save, disabled: Boolean(current().draft.conflict) },
       h("button", { type: "button", onclick: discard }, "Close without saving"),
-      h("span.space"),
-      h("button", { type: "button", onclick: closeDialog }, "Cancel"),
-      h(
-        "button",
-        { type: "button", class: "primary", onclick: save, disabled: current().draft.conflict },
-        "Save and close",
-      ),
     ),
   ]);
 }
@@ -119,7 +113,7 @@ function projectName(state) {
         value: name,
         onchoose: (value) => attempt("open", { target: value }),
       },
-      targets.map((each) => h("option", { key: each, value: each }, each)),
+      targets.map((each) => option(each)),
     ),
   );
 }

@@ -3,7 +3,7 @@
 
 import { comparisonPart } from "./comparison.js";
 import { swatch } from "./curves.js";
-import { h, id } from "./dom.js";
+import { h, id, option } from "./dom.js";
 import { enablePart, answersPart, goalsPart } from "./enabling.js";
 import { icon } from "./icons.js";
 import { command, isMade, refusal, request, save } from "./live_commands.js";
@@ -14,7 +14,7 @@ import { actuatorsPart, moveOn } from "./move_by_hand.js";
 import { colour, dash, drawPlots } from "./plots.js";
 import { recordingPart } from "./recording.js";
 import { isEnabled, isUnattended } from "./robot.js";
-import { savePng } from "./save.js";
+import { pngButton } from "./save.js";
 import { current } from "./server.js";
 import { timingPart } from "./timing.js";
 import { attempt, draw } from "./ui.js";
@@ -74,7 +74,7 @@ function portsPart({ ports, console }) {
   const list = h(
     "datalist",
     { id: "live-ports" },
-    ports.map((each) => h("option", { key: each.path, value: each.path })),
+    ports.map(({ path }) => option(path, "")),
   );
   const shown = port || ports[0]?.path || "";
   return h(
@@ -210,15 +210,7 @@ function savePart(target) {
     { key: "save" },
     button("csv", "Save as CSV", "All signals, as far back as they are recorded"),
     button("mcap", "Save as MCAP", "For PlotJuggler and Foxglove"),
-    h(
-      "button",
-      {
-        title: "The plots",
-        disabled: !shown.length,
-        onclick: () => savePng(document.querySelector(".plots"), shown, `${target.name}.png`),
-      },
-      "Save as PNG",
-    ),
+    pngButton(".plots", shown, `${target.name}.png`, { title: "The plots", disabled: !shown.length }),
     h("p.hint.live-kept", { key: "kept" }, keptText()),
     h("p.hint", { key: "making", role: "status" }, MAKING[isMade()]),
   );

@@ -4,7 +4,7 @@
 // The server makes the drawing and the list of pins of the same data. The drawing reacts to the pointer; the lists do the
 // same by keyboard. The drawing is in a shadow tree, so that its style sheet does not apply to the page.
 
-import { h, id, plural } from "./dom.js";
+import { h, id, listField, option, plural } from "./dom.js";
 import { icon } from "./icons.js";
 import { pictureLink } from "./pictures.js";
 import { act, current, getJson, getText } from "./server.js";
@@ -68,23 +68,12 @@ function tools(state, signals, whyNot, shown) {
         { key: "all", disabled: Boolean(whyNot), onclick: () => changePins("first_pins", {}) },
         `Find pins for ${plural(lacking.length, "signal")} without one`,
       ),
-    h(
-      "div.field",
-      { key: "signal" },
-      h("label", { for: "pin-signal" }, "Signal"),
-      h(
-        "select",
-        { id: "pin-signal", value: chosen, onchange: (event) => choose(event.target.value) },
-        h("option", { value: "", key: "" }, "– choose a signal –"),
-        [...Map.groupBy(signals, (each) => each.component)].map(([component, all]) =>
-          h(
-            "optgroup",
-            { label: component, key: component },
-            all.map((each) => h("option", { value: nameOf(each), key: nameOf(each) }, optionText(each))),
-          ),
-        ),
+    listField("pin-signal", "Signal", { value: chosen, onchange: (event) => choose(event.target.value) }, [
+      option("", "– choose a signal –"),
+      [...Map.groupBy(signals, (each) => each.component)].map(([component, all]) =>
+        h("optgroup", { label: component, key: component }, all.map(signalOption)),
       ),
-    ),
+    ]),
     whyNot && h("p.muted", { key: "why-not" }, `Pins cannot be changed here: ${whyNot}.`),
     !chosen &&
       !whyNot &&
@@ -101,7 +90,7 @@ function tools(state, signals, whyNot, shown) {
   ];
 }
 
-const optionText = (each) => `${titleOf(each)}: ${each.pin || "no pin"}`;
+const signalOption = (each) => option(nameOf(each), `${titleOf(each)}: ${each.pin || "no pin"}`);
 
 // The errors of pins in the files. A press chooses the signal, whose list then shows the pins that fit.
 /** @param {State} state */

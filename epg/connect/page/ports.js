@@ -2,7 +2,7 @@
 // The model in the middle of the page: its inputs with their sources, and its outputs with their sinks.
 
 import { editConversion } from "./conversion.js";
-import { h, id, plural } from "./dom.js";
+import { h, id, option, plural } from "./dom.js";
 import { handle, match, modelLabel } from "./handles.js";
 import { icon } from "./icons.js";
 import { inline, isError } from "./problems.js";
@@ -184,19 +184,15 @@ function field(state, side, port, end, n) {
 function options(state, side, port, end, n) {
   const { name } = port;
   const more = n > 0 && end === null;
-  const list = [
-    h("option", { key: "", value: "" }, more ? "(choose another)" : n > 0 ? "(remove)" : "(not connected)"),
-  ];
-  if (side === "outputs" && n === 0) {
-    list.push(h("option", { key: "unconnected", value: "unconnected" }, "unconnected on purpose"));
-  }
+  const list = [option("", more ? "(choose another)" : n > 0 ? "(remove)" : "(not connected)")];
+  if (side === "outputs" && n === 0) list.push(option("unconnected", "unconnected on purpose"));
   const references = [...(state.candidates[name] || [])];
   if (end && !references.includes(end.reference)) references.push(end.reference);
-  const option = (reference) => h("option", { key: `:${reference}`, value: `:${reference}` }, reference);
+  const named = (reference) => option(`:${reference}`, reference);
   const good = references.filter((reference) => fits(state, side, name, reference));
   const others = references.filter((reference) => !good.includes(reference));
-  list.push(...good.map(option));
-  if (others.length) list.push(h("optgroup", { key: "others", label: "different unit or type" }, others.map(option)));
+  list.push(...good.map(named));
+  if (others.length) list.push(h("optgroup", { key: "others", label: "different unit or type" }, others.map(named)));
   return list;
 }
 

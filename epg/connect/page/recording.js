@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Recordings of every control cycle around a trigger, which a running target makes in its memory.
 
-import { drawCurves, legend } from "./curves.js";
-import { h } from "./dom.js";
+import { curvesPart } from "./curves.js";
+import { h, listField, option } from "./dom.js";
 import { save } from "./live_commands.js";
 import { colour, dash } from "./plots.js";
-import { savePng } from "./save.js";
+import { pngButton } from "./save.js";
 import { getJson } from "./server.js";
 import { draw } from "./ui.js";
 
@@ -49,28 +49,18 @@ export function recordingPart(target, chosen, send) {
           send(commandOf(target, signals));
         },
       },
-      h(
-        "div.field",
-        { key: "when" },
-        h("label", { for: "recording-when" }, "Trigger"),
-        h(
-          "select",
-          { id: "recording-when", value: form.when, onchange: (event) => fill("when", event.target.value) },
-          Object.entries(WHEN).map(([value, text]) => h("option", { key: value, value }, text)),
-        ),
+      listField(
+        "recording-when",
+        "Trigger",
+        { value: form.when, onchange: (event) => fill("when", event.target.value) },
+        Object.entries(WHEN).map(([value, text]) => option(value, text)),
       ),
       "<>".includes(form.when) && [
-        h(
-          "div.field",
-          { key: "signal" },
-          h("label", { for: "recording-signal" }, "Signal"),
-          h(
-            "select",
-            { id: "recording-signal", value: watched(target), onchange: (event) => fill("signal", event.target.value) },
-            target.signals
-              .filter((each) => !each.loop)
-              .map((each) => h("option", { key: each.name, value: each.name }, each.name)),
-          ),
+        listField(
+          "recording-signal",
+          "Signal",
+          { value: watched(target), onchange: (event) => fill("signal", event.target.value) },
+          target.signals.filter((each) => !each.loop).map((each) => option(each.name)),
         ),
         input("level", "Level"),
       ],
@@ -177,24 +167,13 @@ function resultPart(name, shown) {
     "div.recorded",
     { key: "result" },
     h("p", { key: "text" }, text),
-    legend(curves),
-    h("div.curves", {
-      key: "curves",
-      keep: true,
-      role: "img",
-      "aria-label": `Recording of ${curves.map((each) => each.name).join(", ")}. ${text}`,
-      shown: (place) => drawCurves(place, shown),
-    }),
+    curvesPart(`Recording of ${curves.map((each) => each.name).join(", ")}. ${text}`, shown),
     h(
       "p",
       { key: "save" },
       h("button", { onclick: () => save("capture", "csv", `${name}-recording.csv`) }, "Save as CSV"),
       " ",
-      h(
-        "button",
-        { onclick: (event) => savePng(event.target.closest(".recorded"), curves, `${name}-recording.png`) },
-        "Save as PNG",
-      ),
+      pngButton(".recorded", curves, `${name}-recording.png`),
     ),
   );
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files for the user's computer, which can be another one than that of EPG.
 
+import { h } from "./dom.js";
 import { getPicture } from "./server.js";
 
 const LINE = 20; // pixels of a line of a picture's legend
@@ -60,9 +61,13 @@ function note(name) {
   }
 }
 
-// Saves the plots in `place` as a picture, with the names and lines of their curves: [{name, colour, dash}].
-export async function savePng(place, curves, name) {
-  const plots = [...place.querySelectorAll("canvas")];
+// A button that saves the plots in the element `place` as a picture, with the names and lines of their curves:
+// [{name, colour, dash}].
+export const pngButton = (place, curves, name, attributes = {}) =>
+  h("button", { ...attributes, onclick: () => savePng(`${place} canvas`, curves, name) }, "Save as PNG");
+
+async function savePng(selector, curves, name) {
+  const plots = /** @type {HTMLCanvasElement[]} */ ([...document.querySelectorAll(selector)]);
   const scale = window.devicePixelRatio;
   const canvas = document.createElement("canvas");
   canvas.width = Math.max(...plots.map((plot) => plot.width));

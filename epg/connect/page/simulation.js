@@ -11,7 +11,7 @@ import {
   pathPart,
   stepText,
 } from "./activity.js";
-import { h } from "./dom.js";
+import { h, option, table } from "./dom.js";
 import { icon } from "./icons.js";
 import { pictureAt } from "./pictures.js";
 import { isError, shortFile } from "./problems.js";
@@ -100,7 +100,7 @@ function choice({ simulations, simulation }) {
               draw();
             },
           },
-          found.map((each) => h("option", { key: each.name, value: each.name }, shortFile(each.scenario))),
+          found.map((each) => option(each.name, shortFile(each.scenario))),
         ),
       ),
   ];
@@ -120,15 +120,9 @@ function resultPart(state, result) {
       "simulation",
       describe(result),
     ),
-    checks.length > 0 &&
-      table("checks", "Limits of the scenario", ["Limit", "Value", "At most", ""], checks.map(check)),
+    checks.length > 0 && results("Limits of the scenario", ["Limit", "Value", "At most", ""], checks.map(check)),
     windows.length > 0 &&
-      table(
-        "windows",
-        "Errors: position - setpoint",
-        ["Axis", "Time", "RMS error", "Largest error"],
-        windows.map(errors),
-      ),
+      results("Errors: position - setpoint", ["Axis", "Time", "RMS error", "Largest error"], windows.map(errors)),
     h("p.muted", { key: "files" }, "The values of each cycle are in ", h("code", "trace.csv"), ":"),
     h("div", { key: "folder" }, pathPart(result.folder)),
   ];
@@ -155,29 +149,7 @@ const errors = (each) => [
   number(each.largest, each.unit),
 ];
 
-function table(key, caption, head, rows) {
-  return h(
-    "table",
-    { key, class: "results" },
-    h("caption", caption),
-    h(
-      "thead",
-      h(
-        "tr",
-        head.map((text) => h("th", { scope: "col" }, text)),
-      ),
-    ),
-    h(
-      "tbody",
-      rows.map((cells) =>
-        h(
-          "tr",
-          cells.map((cell) => h("td", cell)),
-        ),
-      ),
-    ),
-  );
-}
+const results = (caption, head, rows) => table({ key: caption, class: "results" }, h("caption", caption), head, rows);
 
 /** @param {SimulationResult} result */
 function describe({ windows, duration }) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A system: its targets as boxes, and the connections between them. A box opens its target.
 
-import { h, id, plural, render } from "./dom.js";
+import { h, id, plural, render, rowHead, table } from "./dom.js";
 import { icon } from "./icons.js";
 import { counted } from "./problems.js";
 import { current } from "./server.js";
@@ -129,27 +129,14 @@ export function connectionTable(state) {
   if (connections.length === 0) return h("p.empty", "The targets are not connected with each other.");
   const head = ["From", "To", "Topic", "Message", "Unit", "Sent", "Oldest value"];
   return [
-    h(
-      "table",
+    table(
       { key: "table" },
       h("caption.unseen", "Connections"),
-      h(
-        "thead",
-        h(
-          "tr",
-          head.map((title) => h("th", { scope: "col" }, title)),
-        ),
-      ),
-      h(
-        "tbody",
-        connections.map(({ from, to, topic, message, unit, sent, age }) =>
-          h(
-            "tr",
-            h("th", { scope: "row" }, full(from)),
-            [full(to), topic, message, unit, sent, age].map((text) => h("td", text)),
-          ),
-        ),
-      ),
+      head,
+      connections.map(({ from, to, topic, message, unit, sent, age }) => [
+        rowHead(full(from)),
+        ...[full(to), topic, message, unit, sent, age],
+      ]),
     ),
     h(
       "ul.loops",

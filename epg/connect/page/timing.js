@@ -2,7 +2,7 @@
 // The timing of the control loop of a running target: the numbers of the console's command `stats`, and histograms of
 // the rows that were streamed since the connection.
 
-import { h, id } from "./dom.js";
+import { h, id, rowHead, table } from "./dom.js";
 import { ask } from "./server.js";
 import { draw } from "./ui.js";
 
@@ -26,7 +26,7 @@ export const timingPart = (target) =>
     "details.live-timing",
     { key: "timing", ontoggle: (event) => follow(event.target) },
     h("summary", "Loop timing"),
-    "cycles" in shown ? table(target.period * 1e9) : h("p.hint", { key: "none" }, "The target is being asked."),
+    "cycles" in shown ? numbers(target.period * 1e9) : h("p.hint", { key: "none" }, "The target is being asked."),
     h(
       "div.histograms",
       { key: "histograms" },
@@ -49,16 +49,20 @@ function take(part, lines) {
   if (part.isConnected) timer = window.setTimeout(() => follow(part), PERIOD);
 }
 
-function table(period) {
-  const times = { lateness_max: "Latest start after a tick" };
-  for (const [name, text] of [
-    ["min", "Shortest cycle"],
-    ["mean", "Mean cycle"],
-    ["max", "Longest cycle"],
-  ]) {
-    times[`computation_${name}`] = text;
-  }
-  const rows = Object.entries(times).map(([name, text]) => {
+const TIMES = {
+  lateness_max: "Latest start after a tick",
+  computation_min: "Shortest cycle",
+  computation_mean: "Mean cycle",
+  computation_max: "Longest cycle",
+};
+const COUNTS = {
+  cycles: "Cycles",
+  overruns: "Cycles that ended after the next tick",
+  missed: "Ticks without a cycle",
+};
+
+function numbers(period) {
+  const rows = Object.entries(TIMES).map(([name, text]) => {
     const ns = Number(shown[`${name}_ns`]);
     const share = `${Number(((100 * ns) / period).toPrecision(2))} %`;
     const valuetext = `${share} of the control period`;
@@ -70,30 +74,11 @@ function table(period) {
       high: period * 0.8,
       value: ns,
     });
-    return [text, `${Number((ns / 1000).toPrecision(4))} µs`, share, bar];
+    return [rowHead(text), `${Number((ns / 1000).toPrecision(4))} µs`, share, bar];
   });
-  const counts = {
-    cycles: "Cycles",
-    overruns: "Cycles that ended after the next tick",
-    missed: "Ticks without a cycle",
-  };
-  for (const [name, text] of Object.entries(counts)) rows.push([text, shown[name], "", ""]);
-  return h(
-    "table.results",
-    { key: "table" },
-    h("caption", `Since the start of the target; the control period is ${period / 1e6} ms`),
-    h(
-      "tbody",
-      rows.map(([text, ...cells]) =>
-        h(
-          "tr",
-          { key: text },
-          h("th", { scope: "row" }, text),
-          cells.map((cell) => h("td", cell)),
-        ),
-      ),
-    ),
-  );
+  for (const [name, text] of Object.entries(COUNTS)) rows.push([rowHead(text), shown[name], "", ""]);
+  const caption = h("caption", `Since the start of the target; the control period is ${period / 1e6} ms`);
+  return table({ key: "table", class: "results" }, caption, [], rows);
 }
 
 // Bars of equal width for the bins. Their heights are logarithmic, so that one late cycle among millions is seen.
