@@ -94,11 +94,18 @@ def serving(session: Session) -> Iterator[Page]:
 @contextmanager
 def serving_pages(session: Session, port: int = 0) -> Iterator[Callable[[], Page]]:
     """Opens pages of ``session``, all on one server."""
+    with serving_addresses(session, port) as new_address:
+        yield lambda: Page(new_address())
+
+
+@contextmanager
+def serving_addresses(session: Session, port: int = 0) -> Iterator[Callable[[], str]]:
+    """Addresses of ``session``, each of which opens one page."""
     server = Server(session, port)
     thread = threading.Thread(target=server.run)
     thread.start()
     try:
-        yield lambda: Page(server.new_address())
+        yield server.new_address
     finally:
         session.ended.set()
         thread.join(20)

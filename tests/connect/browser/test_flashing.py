@@ -3,15 +3,13 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from epg.connect.server import Server
-from tests.connect.page import session_of
+from tests.connect.page import serving_addresses, session_of
 from tests.connect.test_flashing import attach, built, drive, pico, plug, restarting, robot, tools
 from tests.system.test_flash import FIRST, SECOND
 
@@ -25,11 +23,8 @@ def test_a_board_is_named_and_confirmed(open_page: Open, tools: Path, tmp_path: 
     _, made = robot(tmp_path)
     session = session_of(tmp_path / "robot")
     built(session, made)
-    server = Server(session)
-    thread = threading.Thread(target=server.run)
-    thread.start()
-    try:
-        page = open_page(server.new_address())
+    with serving_addresses(session) as new_address:
+        page = open_page(new_address())
         page.get_by_role("tab", name="Build").click()
         page.get_by_role("button", name="Flash").click()
         dialog = page.get_by_role("dialog", name="Write the firmware to a board?")
@@ -65,10 +60,6 @@ def test_a_board_is_named_and_confirmed(open_page: Open, tools: Path, tmp_path: 
         restarting(folder)()
         panel.get_by_text(f"Wrote robot_firmware.uf2 to RPI-RP2, the drive {folder}.").wait_for()
         assert violations(page) == []
-    finally:
-        session.ended.set()
-        thread.join(20)
-        assert not thread.is_alive()
 
 
 @pytest.mark.usefixtures("tools")
@@ -76,14 +67,8 @@ def test_a_program_for_this_computer_has_no_flash(open_page: Open, tmp_path: Pat
     _, made = robot(tmp_path, "host_jiwy")
     session = session_of(tmp_path / "robot")
     built(session, made, runs=True)
-    server = Server(session)
-    thread = threading.Thread(target=server.run)
-    thread.start()
-    try:
-        page = open_page(server.new_address())
+    with serving_addresses(session) as new_address:
+        page = open_page(new_address())
         page.get_by_role("tab", name="Build").click()
         page.get_by_role("button", name="Run robot_firmware.elf in real time").wait_for()
         assert page.get_by_role("button", name="Flash").count() == 0
-    finally:
-        session.ended.set()
-        thread.join(20)
