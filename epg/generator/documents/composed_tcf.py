@@ -42,18 +42,20 @@ def composed_tcf(name: str, roots: Sequence[Path]) -> FoundTcf | None:
     robots = _robot_files(roots)
     for robot in robots:
         target = stem.removesuffix(f"_{robot}")
-        if target == stem or not _has_no_target(robot, robots):
-            continue
-        for board, platform in _splits(target, roots):
-            folders = [root / "robots" / robot for root in roots]
-            absent = [folder / f"{stem}.tcf" for folder in folders]
-            for file in _extended(board, platform, robot, roots):
-                for folder in folders:
-                    if is_file(folder / file):
-                        text = f"version: 1\nextends: {file}\ntarget: {target}\n"
-                        return FoundTcf(folder / f"{stem}.tcf", text, tuple(absent))
-                    absent.append(folder / file)
+        named = target != stem and _has_no_target(robot, robots)
+        if named and (split := next(_splits(target, roots), None)):
+            return _composed(stem, target, robot, list(_extended(*split, robot, roots)), roots)
     return None
+
+
+def _composed(stem: str, target: str, robot: str, files: Sequence[str], roots: Sequence[Path]) -> FoundTcf:
+    """The configuration that extends the first of ``files``; the last of them, that of the robot, exists."""
+    folders = [root / "robots" / robot for root in roots]
+    places = [folder / file for file in files for folder in folders]
+    first = next(number for number, place in enumerate(places) if is_file(place))
+    absent = (*(folder / f"{stem}.tcf" for folder in folders), *places[:first])
+    text = f"version: 1\nextends: {places[first].name}\ntarget: {target}\n"
+    return FoundTcf(places[first].parent / f"{stem}.tcf", text, absent)
 
 
 def _robot_files(roots: Sequence[Path]) -> dict[str, Path]:

@@ -12,19 +12,16 @@ from epg.generator.models.code import ModelLibrary
 from epg.generator.models.code_parts import SourceRange
 from epg.generator.models.link import Linked
 
+Places = tuple[tuple[SourceRange, ...], ...]
+"""The places of each parameter's value."""
 
-def copies(linked: Linked, places: tuple[tuple[SourceRange, ...], ...], library: ModelLibrary) -> dict[str, str]:
+
+def copies(linked: Linked, places: Places, library: ModelLibrary) -> dict[str, str]:
     """Copies of the files that set a parameter to which the library gives a new value.
 
     Only the values differ from the originals.  ``places`` are those of each parameter's value.
     """
-    values = library.values
-    edits: dict[Path, list[tuple[int, int, float]]] = {}
-    for parameter, values_at in zip(library.model.parameters, places, strict=True):
-        if parameter.name not in values:
-            continue
-        for place in values_at:
-            edits.setdefault(place.file, []).append((place.start, place.end, values[parameter.name]))
+    edits = new_values(places, library)
     texts = {code.file.path: code.file.text for code in linked.units}
     return {copy_name(library.name, path): _edited(texts[path], edits[path]) for path in sorted(edits)}
 
@@ -32,6 +29,16 @@ def copies(linked: Linked, places: tuple[tuple[SourceRange, ...], ...], library:
 def copy_name(name: str, path: Path) -> str:
     """The name of a copy.  Its folder holds no headers, so that the copy includes the headers of the export."""
     return f"{name}_copies/{path.name}"
+
+
+def new_values(places: Places, library: ModelLibrary) -> dict[Path, list[tuple[int, int, float]]]:
+    """The new values in each file that has one, with the start and the end of the text that they replace."""
+    edits: dict[Path, list[tuple[int, int, float]]] = {}
+    for parameter, values_at in zip(library.model.parameters, places, strict=True):
+        if parameter.name in library.values:
+            for place in values_at:
+                edits.setdefault(place.file, []).append((place.start, place.end, library.values[parameter.name]))
+    return edits
 
 
 def _edited(text: str, edits: list[tuple[int, int, float]]) -> str:

@@ -3,11 +3,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 from epg.generator.dataclass import dataclass
+from epg.generator.emit.text import Code, cstring
+from epg.generator.importers.fmu.fmi_headers import fmi_functions, fmi_headers
 from epg.generator.models.code import ModelBuild, ModelCode, ModelLibrary, Render
 from epg.generator.models.code_parts import GlobalVariable
 from epg.generator.models.link import Linked
@@ -88,14 +92,12 @@ class FmuExport(ModelCode):
         return f"the FMU reports no error{states}{' and its heap is large enough' if self.heap else ''}"
 
     def files(self, library: ModelLibrary, render: Render) -> dict[str, str]:
-        from epg.generator.importers.fmu.fmu_code import fmu_code, fmu_files
-
         name = library.name
-        variables = fmu_code(library.model, self, name, library.values, library.instances)
+        variables = _variables(library.model, self, name, library.values, library.instances)
         return {
             f"{name}_export.c": render("fmu.c.j2", **variables),
             f"{name}_names.h": render("fmu_names.h.j2", **variables),
-            **fmu_files(self, name),
+            **_files(self, name),
         }
 
     def build(self, library: ModelLibrary, frame: ModelBuild) -> ModelBuild:
@@ -115,9 +117,7 @@ class FmuExport(ModelCode):
         )
 
     def limits_values(self, model: Model) -> bool:
-        from epg.generator.importers.fmu.fmu_code import has_limits
-
-        return has_limits(self)
+        return _has_limits(self)
 
     def about(self, model: Model) -> str:
         return f"Made by {self.tool}." if self.tool else "An FMU for co-simulation."
@@ -130,3 +130,95 @@ class FmuExport(ModelCode):
 def fmu_folder(name: str) -> str:
     """The name of the folder into which an archive is unpacked."""
     return f"{name}_fmu"
+
+
+@dataclass(frozen=True)
+class FmiType:
+    """A type of FMI and its C type ``c``.
+
+    ``low`` and ``high`` are the smallest and the largest double that the C type can hold; of 64 bits, those up to which
+    a double has all whole numbers.  They are empty for numbers
+    that are doubles in C, too, and for Booleans.  ``whole`` is True for integers.
+    """
+
+    name: str  # "Real", "UInt8"
+    c: str
+    low: str = ""
+    high: str = ""
+    whole: bool = False
+
+
+def _integer(name: str, c: str, bits: int, signed: bool) -> FmiType:
+    high = float(min((1 << (bits - signed)) - 1, 1 << 53))
+    low = max(-float(1 << (bits - 1)), -(2.0**53)) if signed else 0.0
+    return FmiType(name, c, repr(low), repr(high), whole=True)
+
+
+_LARGEST_FLOAT = float.fromhex("0x1.fffffep127")
+
+
+_TYPES = {
+    2: {
+        "Real": FmiType("Real", "fmi2Real"),
+        "Integer": _integer("Integer", "fmi2Integer", 32, True),
+        "Boolean": FmiType("Boolean", "fmi2Boolean"),
+    },
+    3: {
+        "Float64": FmiType("Float64", "fmi3Float64"),
+        "Float32": FmiType("Float32", "fmi3Float32", repr(-_LARGEST_FLOAT), repr(_LARGEST_FLOAT)),
+        "Boolean": FmiType("Boolean", "fmi3Boolean"),
+        **{
+            f"{sign}Int{bits}": _integer(f"{sign}Int{bits}", f"fmi3{sign}Int{bits}", bits, not sign)
+            for sign in ("", "U")
+            for bits in (8, 16, 32, 64)
+        },
+    },
+}
+
+
+def _variables(
+    model: Model, details: FmuExport, name: str, values: Mapping[str, float], instances: int
+) -> dict[str, Any]:
+    """The template variables of ``fmu.c.j2`` and ``fmu_names.h.j2``."""
+    fmi = f"fmi{details.standard}"
+    types = _TYPES[details.standard]
+    used = sorted({place.type for place in details.parameters})
+    titles = [details.instance_name] + [f"{details.instance_name} {index + 1}" for index in range(1, instances)]
+    return {
+        "fmi": Code(fmi),
+        "real": types["Real" if details.standard == 2 else "Float64"],
+        "groups_in": [_group(group, types) for group in details.inputs],
+        "groups_out": [_group(group, types) for group in details.outputs],
+        "parameter_types": [types[kind] for kind in used],
+        "places": [
+            (used.index(place.type), place.reference, parameter.tunable, parameter)
+            for place, parameter in zip(details.parameters, model.parameters, strict=True)
+        ],
+        "given": [(index, values[p.name], p) for index, p in enumerate(model.parameters) if p.name in values],
+        "guid": cstring(details.guid),
+        "titles": [cstring(title) for title in titles],
+        "functions": fmi_functions(details.standard),
+        "heap_functions": ("malloc", "calloc", "realloc", "free", "strdup"),
+    }
+
+
+def _has_limits(details: FmuExport) -> bool:
+    """True if a number of the FMU has a range: that of an input or a parameter, or of an output of 64 bits."""
+    types = _TYPES[details.standard]
+    taken = {group.type for group in details.inputs} | {parameter.type for parameter in details.parameters}
+    given = {group.type for group in details.outputs}
+    return any(types[name].low for name in taken) or not given.isdisjoint(("Int64", "UInt64"))
+
+
+def _group(group: FmuPorts, types: Mapping[str, FmiType]) -> dict[str, Any]:
+    type = types[group.type]
+    limited = [replace(type, low=repr(float(of[0])), high=repr(float(of[1]))) if of else type for of in group.limits]
+    places = list(zip(limited, group.positions, strict=True))
+    return {"type": type, "references": group.references, "positions": group.positions, "places": places}
+
+
+def _files(details: FmuExport, name: str) -> dict[str, str]:
+    """The files of an FMU that is an archive, and the headers of FMI that the FMU does not contain."""
+    files = {f"{fmu_folder(name)}/{path}": text for path, text in details.packed}
+    headers = fmi_headers(details.standard)
+    return files | {f"{name}_headers/{header}": headers[header] for header in details.headers}

@@ -10,7 +10,7 @@ import re
 
 from epg.generator.diagnostics import Diagnostics, Note, did_you_mean
 from epg.generator.documents.text_file import one_line
-from epg.generator.importers.tokens.tokens_export import TokensExport
+from epg.generator.importers.tokens.tokens_export import ARRAYS, CODE, TokensExport
 from epg.generator.models.assignments import assignments, exact_number, is_step, port_lines
 from epg.generator.models.c_code import KEYWORDS
 from epg.generator.models.features import STUBS, check_method, check_tokens, rounded_in
@@ -20,40 +20,9 @@ from epg.generator.models.ports import check_identifiers, make_parameters, make_
 from epg.generator.models.tokens import Tokens
 from epg.generator.source import Span
 
-EQUATIONS = (
-    "INITIAL_EQUATIONS",
-    "STATIC_EQUATIONS",
-    "INPUT_EQUATIONS",
-    "DYNAMIC_EQUATIONS",
-    "OUTPUT_EQUATIONS",
-    "FINAL_EQUATIONS",
-)
-CODE = (
-    "INITIALIZE_CONSTANTS",
-    "INITIALIZE_PARAMETERS",
-    "INITIALIZE_INITIAL_VALUES",
-    "INITIALIZE_STATES",
-    "INPUT_TO_VARIABLE_EQUATIONS",
-    "VARIABLE_TO_OUTPUT_EQUATIONS",
-    *EQUATIONS,
-)
-
 #: tokens whose values the C code around the equations depends on
 NEEDED = """TIME_STEP_SIZE INTEGRATION_METHOD_NAME VARPREFIX NUMBER_INPUTS NUMBER_OUTPUTS NUMBER_PARAMETERS
 NUMBER_INITIAL_VALUES NUMBER_VARIABLES NUMBER_STATES""".split()
-
-#: arrays, by the token with their name: the default name, the member of the instance in C, the token with their size
-ARRAYS = {
-    "XX_VARIABLE_ARRAY_NAME": ("V", "variables", "NUMBER_VARIABLES"),
-    "XX_PARAMETER_ARRAY_NAME": ("P", "parameters", "NUMBER_PARAMETERS"),
-    "XX_INITIAL_VALUE_ARRAY_NAME": ("I", "initial_values", "NUMBER_INITIAL_VALUES"),
-    "XX_CONSTANT_ARRAY_NAME": ("C", "constants", "NUMBER_CONSTANTS"),
-    "XX_STATE_ARRAY_NAME": ("s", "states", "NUMBER_STATES"),
-    "XX_RATE_ARRAY_NAME": ("R", "rates", "NUMBER_STATES"),
-    "XX_UNNAMED_ARRAY_NAME": ("U", "unnamed", "NUMBER_UNNAMED"),
-    "XX_FAVORITE_PARS_ARRAY_NAME": ("F", "favorite_parameters", "NUMBER_FAVORITE_PARAMETERS"),
-    "XX_FAVORITE_VARS_ARRAY_NAME": ("f", "favorite_variables", "NUMBER_FAVORITE_VARIABLES"),
-}
 
 #: functions of <math.h> that equations can call directly
 MATH = words("acos asin atan atan2 ceil cos cosh exp fabs floor fmod log log10 pow sin sinh sqrt tan tanh")
