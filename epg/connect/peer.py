@@ -8,10 +8,11 @@ owner who is not known is not refused, because then the keys of ``keys.py`` stil
 
 from __future__ import annotations
 
-import os
 import socket
 import sys
 from pathlib import Path
+
+from epg.generator.system import here as system
 
 TABLE = Path("/proc/net/tcp")
 _OVERFLOW = 65534
@@ -24,10 +25,11 @@ def is_another_user(peer: tuple[str, int], here: tuple[str, int]) -> bool:
     The superuser does not count as another user, because root may do everything anyway.  The user who has started this
     program with sudo does not count either.
     """
-    user = owner(peer, here)
+    own = system.own_users()
+    user = owner(peer, here) if own else None
     if user is None or (user == _OVERFLOW and not _sees_all_users()):
         return False
-    return user not in {0, os.geteuid(), _sudo_user()}
+    return user not in own
 
 
 def owner(peer: tuple[str, int], here: tuple[str, int], table: Path = TABLE) -> int | None:
@@ -51,8 +53,3 @@ def _sees_all_users(table: Path = Path("/proc/self/uid_map")) -> bool:
         return table.read_text(encoding="ascii").split() == ["0", "0", "4294967295"]
     except (OSError, ValueError):
         return True
-
-
-def _sudo_user() -> int | None:
-    number = os.environ.get("SUDO_UID", "")
-    return int(number) if os.geteuid() == 0 and number.isdecimal() and len(number) < 12 else None

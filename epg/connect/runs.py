@@ -24,7 +24,7 @@ from epg.generator.resolve.application import Application
 from epg.generator.source import Span
 
 START = 10.0
-"""Seconds that a program gets to make the terminal of its console."""
+"""Seconds that a program gets to open its console."""
 
 
 class Runs:
@@ -148,23 +148,22 @@ class Runs:
             self._program.start(program, port)
 
     def run_with_console(self, program: Path) -> Path:
-        """Runs a program that the user has named on the command line.  Returns the terminal of its console.
+        """Runs a program that the user has named on the command line.  Returns the port of its console.
 
         Raises Refused.
         """
         self.check_idle()
-        port = port_of(program)
         self._program = ProgramRun(self._changed)
-        self._program.start(program, port)
+        self._program.start(program, port_of(program))
         end = time.monotonic() + START
-        while not port.exists() and self._program.is_running and time.monotonic() < end:
+        while self._program.console is None and self._program.is_running and time.monotonic() < end:
             time.sleep(0.02)
         if not self._program.is_running:
             problem = self._program.state()["messages"][0]
             raise Refused(problem["message"], problem["hint"], 409)
-        if not port.exists():
+        if self._program.console is None:
             raise Refused(f"'{program.name}' has no console after {START:.0f} s", "name a program of this target", 409)
-        return port
+        return self._program.console
 
     def find_boards(self, job: Job, application: Application) -> None:
         """Looks for boards to which the products of the last build can be written.  Raises Refused."""
@@ -249,7 +248,7 @@ class Runs:
 
     @property
     def port(self) -> str:
-        """The terminal of the program that runs; empty if there is none."""
+        """The port of the program that runs; empty if there is none."""
         return str(self._program.shown["port"]) if self._program.is_running else ""
 
     @property

@@ -184,6 +184,16 @@ def test_a_memory_that_is_too_small(tmp_path: Path) -> None:
     assert len(texts) == 1 and "section `.text' will not fit in region `FLASH'" in texts[0], output
 
 
+def test_a_program_of_windows_that_still_runs() -> None:
+    lines = (
+        "C:/mingw64/x86_64-w64-mingw32/bin/ld.exe: cannot open output file jiwy_host.exe: Permission denied\n"
+        "collect2.exe: error: ld returned 1 exit status"
+    )
+    (message,) = read(lines)
+    assert message.message == "cannot open output file jiwy_host.exe: Permission denied"
+    assert message.hint == "the program may be running: end it, and generate again"
+
+
 def test_a_library_and_an_option_that_are_not_there(tmp_path: Path) -> None:
     (tmp_path / "a.c").write_text("int main(void)\n{\n    return 0;\n}\n")
     (found,) = read(said(tmp_path, "gcc", "a.c", "-lnonsense_of_mine"), tmp_path)

@@ -12,6 +12,7 @@ from urllib.parse import quote
 
 import pytest
 
+from epg.generator.system import here
 from tests.connect.builds import processes
 from tests.connect.page import Denied, Page, serving, session_of
 from tests.connect.robots import new_project
@@ -71,6 +72,27 @@ def test_a_program_runs_until_it_is_stopped(built: Path, tmp_path: Path, monkeyp
         page.until(lambda state: state["program"]["state"] == "running")
         time.sleep(0.5)
     assert not processes(built)
+
+
+def test_a_program_has_a_socket_where_there_are_no_terminals(
+    built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("EPG_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setattr(here, "HAS_TERMINALS", False)
+    with serving(session_of(built)) as page:
+        (product,) = generate(page)["products"]
+        for _ in range(2):  # another socket each time; the command is the same
+            run(page, product["path"])
+            state = page.until(lambda state: state["program"]["port"])
+            port = state["program"]["port"]
+            assert state["live"]["ports"][0] == {"path": port, "device": "the program that runs"}
+            assert port.startswith("udp:127.0.0.1:") and not port.endswith(":0")
+            page.post("live/connect", path=port)
+            assert page.state()["live"]["target"]["matches"]
+            page.post("cancel")
+            state = page.until(lambda state: state["program"]["state"] != "running")
+            assert (state["program"]["state"], state["live"]["problem"]) == ("cancelled", None)
+            assert state["program"]["ask"] is None
 
 
 def test_a_program_that_fails_says_why(built: Path) -> None:

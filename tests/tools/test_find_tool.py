@@ -156,6 +156,8 @@ def test_a_cmake_cache(tmp_path: Path) -> None:
         "# a comment\n//Path\nPICO_SDK_PATH:PATH=/opt/sdk\nA:UNINITIALIZED=x=y\nB:FILEPATH=B-NOTFOUND\nC:BOOL=\n"
     )
     assert read_cmake_cache(file, Diagnostics()) == {"PICO_SDK_PATH": "/opt/sdk", "A": "x=y"}
+    file.write_bytes(file.read_bytes().replace(b"\n", b"\r\n"))  # as CMake writes it on Windows
+    assert read_cmake_cache(file, Diagnostics()) == {"PICO_SDK_PATH": "/opt/sdk", "A": "x=y"}
     diagnostics = Diagnostics()
     read_cmake_cache(tmp_path / "nothing", diagnostics)
     assert [item.id for item in diagnostics] == ["file-not-found"]

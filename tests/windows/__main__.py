@@ -8,6 +8,7 @@ read a checkout whose lines end as on Windows.
 from __future__ import annotations
 
 import csv
+import re
 import shutil
 import subprocess
 import sys
@@ -17,6 +18,8 @@ from functools import partial
 from pathlib import Path
 
 from tests.checkout import ROOT
+from tests.connect.page import Page
+from tests.connect.started import generate
 from tests.waiting import until
 from tests.windows.computer import HERE, MISSING, Computer, is_here
 
@@ -185,6 +188,49 @@ class Run:
             raise RuntimeError(text)
         return "COM12 has the serial number of its parent"
 
+    def system(self) -> str:
+        """Jobs of Windows, and a removable drive with the label of a board."""
+        drive, letter = self.work / "drive", self.computer.prefix / "dosdevices/u:"
+        drive.mkdir()
+        (drive / "INFO_UF2.TXT").write_text("UF2 Bootloader v3.0\r\nBoard-ID: RPI-RP2\r\n")
+        (drive / ".windows-label").write_text("RPI-RP2\n")
+        letter.unlink(missing_ok=True)
+        letter.symlink_to(drive)
+        expect(self.computer.run("reg", "add", r"HKLM\Software\Wine\Drives", "/v", "u:", "/d", "floppy", "/f"))
+        text = expect(self.computer.run(self.computer.python, HERE / "use_system.py")).strip()
+        if "RPI-RP2 is U:\\" not in text:
+            raise RuntimeError(text)
+        return text
+
+    def page(self) -> str:
+        """The page of ``epg connect`` of Windows builds a program, runs it, and uses its console."""
+        project = self.work / "page"
+        self.epg("new", "--target", "host_jiwy", "--model", "examples/jiwy/model", "--name", "robot", project)
+        lists = project / "CMakeLists.txt"
+        lists.write_text(lists.read_text().replace(" C CXX)", " C)"))  # Debian's compiler for C++ is not installed
+        command = (self.computer.python, "-m", "epg", "connect", project, "--no-browser")
+        served = self.computer.start(*command, cwd=self.source, env={"CC": "gcc"})
+        assert served.stdout is not None
+        try:
+            address = next(match[0] for line in served.stdout if (match := re.search(r"http://127\S+#\S+", line)))
+            page = Page(address)
+            build = generate(page, 600)
+            if build["state"] != "done":
+                raise RuntimeError(build["messages"])
+            program = build["products"][0]["path"]
+            page.post("run", path=program, run=page.post("run", path=program)["program"]["ask"]["key"])
+            port = page.until(lambda state: state["program"]["port"])["program"]["port"]
+            page.post("live/connect", path=port)
+            target = page.state()["live"]["target"]
+            page.post("cancel")
+            ended = page.until(lambda state: state["program"]["state"] != "running")
+            said = page.json("api/log?of=program&from=0")["lines"]
+        finally:
+            served.kill()
+        if not target["matches"] or ended["program"]["state"] != "cancelled":
+            raise RuntimeError(f"{target} {ended['program']}")
+        return f"{program} ran with its console on {port}; it said {said[-1]}"
+
     def live(self) -> str:
         """``epg live`` at COM7, which is the terminal of a host program of this computer."""
         program, port = self.work / "linux_build/jiwy_host", self.work / "port"
@@ -218,6 +264,8 @@ class Run:
             report.step(f"cmake --build --target tracking ({generator})", partial(self.main_job, generator))
         report.step("epg simulate", self.simulated)
         report.step("ports of the registry", self.ports)
+        report.step("programs and drives of Windows", self.system)
+        report.step("epg connect builds and runs", self.page)
         report.step("epg live COM7 for 60 s", self.live)
 
 

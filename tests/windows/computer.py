@@ -14,7 +14,7 @@ import subprocess
 import sys
 import tarfile
 import zipfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -83,13 +83,17 @@ class Computer:
         }
 
     def start(
-        self, *command: str | Path, cwd: Path | None = None, stdin: int | None = subprocess.DEVNULL
+        self,
+        *command: str | Path,
+        cwd: Path | None = None,
+        stdin: int | None = subprocess.DEVNULL,
+        env: Mapping[str, str] | None = None,
     ) -> subprocess.Popen[str]:
-        """Starts a program of Windows."""
+        """Starts a program of Windows, with more variables ``env``."""
         return subprocess.Popen(
             ["wine", *(windows(word) if isinstance(word, Path) else word for word in command)],
             cwd=cwd or self.folder,
-            env=self.environment,
+            env=self.environment | dict(env or {}),
             stdin=stdin,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,

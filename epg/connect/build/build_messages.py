@@ -64,6 +64,11 @@ _REFERENCE = re.compile(
     r"(?P<text>(?:undefined reference to|multiple definition of|relocation truncated) .*)"
 )
 _LINKER = re.compile(r"(?:\S*[\\/])?(?:[\w.]+-)*ld(?:\.\w+)?(?:\.exe)?: (?:(?P<severity>error|warning): )?(?P<text>.*)")
+_RUNNING = re.compile(
+    r"cannot open output file .*\.exe'?: Permission denied|failed to write .*\.exe'?: [Pp]ermission denied"
+)
+"""GNU ld and lld on Windows, which does not let a running program be replaced."""
+_RUNNING_HINT = "the program may be running: end it, and generate again"
 _DEVICETREE = re.compile(
     r"devicetree error: (?:" + _FILE + r":(?P<line>\d+)(?: \(column (?P<column>\d+)\))?: )?(?P<text>.*)"
 )
@@ -147,7 +152,9 @@ class Messages:
         elif match := _LINKER.fullmatch(line):
             # such a line names only the function; the next line is the message
             if not re.search(r"in function [`'\"‘].*:$", line):
-                self._add(BuildMessage(match["severity"] or _severity_of(match["text"]), _without_path(match["text"])))
+                hint = _RUNNING_HINT if _RUNNING.search(match["text"]) else ""
+                severity = match["severity"] or _severity_of(match["text"])
+                self._add(BuildMessage(severity, _without_path(match["text"]), hint=hint))
         elif match := _DRIVER.fullmatch(line) or _PROGRAM.fullmatch(line):
             if not _MAKE_STOPS.match(line):
                 self._add(BuildMessage("error", match["text"]))

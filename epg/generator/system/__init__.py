@@ -53,6 +53,10 @@ class System(Protocol):
         """The folder for settings of all programs of the user."""
         ...
 
+    def own_users(self) -> set[int]:
+        """The numbers of this user, of the superuser, and of the user of sudo; empty where users have none."""
+        ...
+
     def access_problem(self, folder: Path) -> str:
         """The reason why other users can change the files in ``folder``; empty if they cannot."""
         ...

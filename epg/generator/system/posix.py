@@ -39,15 +39,19 @@ def settings() -> Path:
     return Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config")
 
 
+def own_users() -> set[int]:
+    own = {0, os.geteuid()}
+    if os.geteuid() == 0 and os.environ.get("SUDO_UID", "").isdecimal():
+        own.add(int(os.environ["SUDO_UID"][:10]))
+    return own
+
+
 def access_problem(folder: Path) -> str:
     try:
         status = folder.stat()
     except OSError:
         return ""  # The function that uses the folder reports the problem.
-    own = {0, os.geteuid()}
-    if os.geteuid() == 0 and os.environ.get("SUDO_UID", "").isdecimal():
-        own.add(int(os.environ["SUDO_UID"][:10]))
-    if status.st_uid not in own:
+    if status.st_uid not in own_users():
         return f"it belongs to another user (number {status.st_uid})"
     if status.st_mode & 0o002 or (status.st_mode & 0o020 and not _is_own_group(status.st_gid)):
         return f"other users can write into it (mode {status.st_mode & 0o7777:o})"

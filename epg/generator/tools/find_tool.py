@@ -107,7 +107,7 @@ def find_tool(tool: Tool, where: Surroundings) -> Finding:
 def read_cmake_cache(path: Path, diagnostics: Diagnostics) -> dict[str, str]:
     """The variables of a ``CMakeCache.txt``, without empty ones and those that end with ``NOTFOUND``."""
     text = read_text(path, diagnostics) or ""
-    found = re.findall(r"^([^#/\s][^:=\n]*):[A-Z]+=(.*)$", text, re.MULTILINE)
+    found = re.findall(r"^([^#/\s][^:=\n]*):[A-Z]+=(.*?)\r?$", text, re.MULTILINE)
     return {name: value for name, value in found if value and not value.endswith("NOTFOUND")}
 
 

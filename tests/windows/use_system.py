@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Run by Windows' Python: cancels a program with children, lets one end with EPG, and finds the drive of a board.
+
+The argument is the folder of the drive of a board, which has the letter U.
+"""
+
+import ctypes
+import os
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+from epg.connect.build.process import Process
+from epg.generator.tools.uf2_drives import uf2_drives
+
+SYNCHRONIZE, STILL_WAITS = 0x100000, 258
+SLEEP = "import time; time.sleep(600)"
+PARENT = f"""if True:
+    import signal, subprocess, sys, time
+    signal.signal(signal.SIGBREAK, signal.SIG_IGN)
+    child = subprocess.Popen([sys.executable, "-c", "{SLEEP}"], creationflags=0x200)  # as Ninja starts compilers
+    print(child.pid, flush=True)
+    time.sleep(600)
+"""
+BINDER = f"""if True:
+    import os, sys
+    from pathlib import Path
+    from epg.generator.system import here
+    group = here.start([sys.executable, "-c", {SLEEP!r}], Path("."), os.environ, modest=True, bound=True)
+    print(group.process.pid, flush=True)
+    os._exit(0)
+"""
+
+
+def runs(process: int) -> bool:
+    kernel = ctypes.WinDLL("kernel32")  # type: ignore[attr-defined]
+    handle = kernel.OpenProcess(SYNCHRONIZE, False, process)
+    waits = bool(handle) and kernel.WaitForSingleObject(handle, 0) == STILL_WAITS
+    kernel.CloseHandle(handle)
+    return waits
+
+
+def ends(process: int) -> bool:
+    end = time.monotonic() + 20
+    while runs(process) and time.monotonic() < end:
+        time.sleep(0.2)
+    return not runs(process)
+
+
+said: list[str] = []
+process = Process((sys.executable, "-c", PARENT), Path("."), os.environ, said.append, modest=True)
+thread = threading.Thread(target=process.run)
+thread.start()
+while not said:
+    time.sleep(0.1)
+child = int(said[0])
+assert runs(child)
+process.cancel()
+thread.join(30)
+assert not thread.is_alive() and ends(child), "a child has outlived its program"
+done = subprocess.run([sys.executable, "-c", BINDER], capture_output=True, text=True)
+assert done.stdout.strip() and ends(int(done.stdout)), f"a program has outlived EPG: {done.stderr}"
+print("children end;", *(f"{drive.board} is {drive.folder}" for drive in uf2_drives()))
