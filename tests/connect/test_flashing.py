@@ -22,7 +22,7 @@ from epg.connect.run.flash import Boards, FlashRun, boards_for
 from epg.connect.session import Session
 from epg.generator.diagnostics import Diagnostics
 from epg.generator.project import load_application
-from epg.generator.system import posix
+from epg.generator.system import on_posix
 from epg.generator.tools import uf2_drives, usb_boards
 from epg.system import flash
 from tests.connect.builds import job_of
@@ -54,7 +54,7 @@ def tools(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "usb").mkdir()
     monkeypatch.setattr(usb_boards, "DEVICES", tmp_path / "usb")
     (tmp_path / "mounts").write_text("sysfs /sys sysfs rw 0 0\n")
-    monkeypatch.setattr(posix, "MOUNTS", tmp_path / "mounts")
+    monkeypatch.setattr(on_posix, "MOUNTS", tmp_path / "mounts")
     monkeypatch.setattr(flash, "_PAUSE", 0.0)
     return folder
 

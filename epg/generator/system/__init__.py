@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The system on which EPG runs.  A module has the name of its system, ``os.name``, and the members of :class:`System`.
+"""The system on which EPG runs.  A module has the name of its system, ``os.name``, and the members of
+:class:`OperatingSystem`.
 
 Only these modules, and those of ``epg/live`` for ports and keyboards, may ask which system it is: tests/docs looks.
 """
@@ -32,7 +33,7 @@ class Group(Protocol):
         ...
 
 
-class System(Protocol):
+class OperatingSystem(Protocol):
     """``END_SIGNALS`` ask a program to end, besides SIGINT; a path with ``NOT_IN_PROJECTS`` is not that of a project.
 
     ``SHARES_PORTS``: the option SO_REUSEADDR only lets a program have a port again at once.
@@ -91,4 +92,4 @@ class System(Protocol):
         ...
 
 
-here = cast(System, importlib.import_module(f"epg.generator.system.{os.name}"))
+here = cast(OperatingSystem, importlib.import_module(f"epg.generator.system.on_{os.name}"))

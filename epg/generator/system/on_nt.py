@@ -87,7 +87,7 @@ def drives() -> list[Path]:
     ]
 
 
-class Job:
+class WindowsJob:
     """A program in a job, which has all programs that it starts, and those that they start."""
 
     def __init__(
@@ -137,5 +137,7 @@ class Job:
         self._kernel.CloseHandle(self._job)
 
 
-def start(command: Sequence[str], folder: Path, environment: Mapping[str, str], *, modest: bool, bound: bool) -> Job:
-    return Job(command, folder, environment, _BELOW_NORMAL if modest else 0, bound=bound)
+def start(
+    command: Sequence[str], folder: Path, environment: Mapping[str, str], *, modest: bool, bound: bool
+) -> WindowsJob:
+    return WindowsJob(command, folder, environment, _BELOW_NORMAL if modest else 0, bound=bound)

@@ -120,7 +120,7 @@ def drives() -> list[Path]:
     return [Path(re.sub(r"\\([0-7]{3})", lambda octal: chr(int(octal[1], 8)), name)) for name in names]
 
 
-class Session:
+class PosixSession:
     """A program that leads a session.  Its process group is not enough: Ninja starts each command in a new one."""
 
     def __init__(self, command: Sequence[str], folder: Path, environment: Mapping[str, str]) -> None:
@@ -167,10 +167,10 @@ class Session:
 
 def start(
     command: Sequence[str], folder: Path, environment: Mapping[str, str], *, modest: bool, bound: bool
-) -> Session:
+) -> PosixSession:
     if bound and sys.platform == "linux":
         command = (sys.executable, "-I", "-S", "-c", _UNTIL_PARENT_ENDS, str(os.getpid()), *command)
-    session = Session(command, folder, environment)
+    session = PosixSession(command, folder, environment)
     if modest:
         with suppress(OSError):  # it has ended already
             os.setpriority(os.PRIO_PROCESS, session.process.pid, NICE)
