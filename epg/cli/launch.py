@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import re
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,7 @@ from epg.generator.diagnostics import Diagnostics
 from epg.generator.source import Span
 
 if TYPE_CHECKING:
+    from epg.ros.agents import Agent
     from epg.runs.robot import Robot
 
 
@@ -115,6 +117,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         diagnostics.error("nothing-to-launch", Span("command line"), "none of these targets needs an agent", hint=hint)
         diagnostics.stop_if_errors()
     if options.systemd:
+        _refuse_ports_of_windows(agents, diagnostics)
         workspace = options.workspace or f"/home/{options.user}/microros_ws"
         installation = Installation(options.user, options.distribution, workspace, options.domain)
         files |= {f"systemd/{name}": text for name, text in unit_files(agents, installation).items()}
@@ -134,6 +137,15 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     else:
         print("wrote " + ", ".join(str(options.output / name) for name in files))
     return 0
+
+
+def _refuse_ports_of_windows(agents: Sequence[Agent], diagnostics: Diagnostics) -> None:
+    for agent in agents:
+        if agent.device is not None and not agent.device.startswith("/dev/"):
+            span = Span.of_argument(agent.device, "--device")
+            message = f"'{agent.device}' is a port of Windows, which does not have systemd"
+            diagnostics.error("wrong-device", span, message, hint="remove --systemd, or name a path in /dev")
+    diagnostics.stop_if_errors()
 
 
 def _assignments(option: str, texts: list[str], diagnostics: Diagnostics) -> dict[str, list[str]]:

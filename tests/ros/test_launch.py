@@ -405,3 +405,16 @@ def test_paths_are_one_word_wherever_they_stand(text: str, robots: Path) -> None
         files = sorted((robots / "systemd").glob("*.service"))
         done = subprocess.run(["systemd-analyze", "verify", *files], capture_output=True, text=True)
         assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("given", "passed"),
+    [("com3", "COM3"), ("COM12:921600", r"\\.\COM12"), (r"\\.\COM3", "COM3"), (r"\\.\com12", r"\\.\COM12")],
+)
+def test_a_port_of_windows(given: str, passed: str, robots: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["launch", "crane.json", "--device", f"crane={given}"]) == 0
+    (node,) = nodes((robots / "agents.launch.py").read_text())
+    rate = "921600" if ":" in given else "115200"
+    assert node["arguments"][:5] == ["serial", "-b", rate, "--dev", passed]
+    assert node["name"] == f"agent_crane_COM{passed.partition('COM')[2]}"
+    assert "run the agent in WSL2" in capsys.readouterr().err

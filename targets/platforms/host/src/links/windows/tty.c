@@ -13,7 +13,8 @@ bool epg_host_link_serial(epg_host_link_t *link, const char *device, uint32_t ba
     (void)link;
     (void)baud_rate;
     fprintf(stderr,
-            "error: on Windows, an agent cannot be reached by the serial port %s\nhint: give its address, HOST:PORT\n",
+            "error: on Windows, an agent cannot be reached by the serial port %s\n"
+            "hint: run the agent in WSL2 or on another computer, and give its address, HOST:PORT\n",
             device);
     return false;
 }
