@@ -37,3 +37,12 @@ def test_the_command_is_the_same(name: str) -> None:
 def test_the_readme_installs_its_own_folder() -> None:
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     assert f"\n{install_command('.')}\n" in text and f"\n{REMEDIES['epg']['windows'].format(folder='.')}\n" in text
+
+
+@pytest.mark.parametrize("name", ["README.md", "docs/windows.md"])
+def test_commands_of_windows_are_for_both_of_its_shells(name: str) -> None:
+    """PowerShell 5.1 and cmd: a line for each command, and no environment to activate."""
+    text = (ROOT / name).read_text(encoding="utf-8")
+    lines = "".join(re.findall(r"^```powershell\n(.*?)^```", text, re.MULTILINE | re.DOTALL)).splitlines()
+    assert lines
+    assert [line for line in lines if re.search(r"[&|;$%~^`'#]|activate|^epg|^python", line)] == []

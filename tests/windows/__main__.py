@@ -8,6 +8,7 @@ read a checkout whose lines end as on Windows.
 from __future__ import annotations
 
 import csv
+import os
 import re
 import shutil
 import subprocess
@@ -17,14 +18,22 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
+import yaml
+
 from tests.checkout import ROOT
 from tests.connect.page import Page
 from tests.connect.started import generate
+from tests.twenty_sim.generate import generate_from
 from tests.waiting import until
-from tests.windows.computer import HERE, MISSING, Computer, is_here
+from tests.windows.computer import HERE, MISSING, Computer, is_here, windows
 
 TARGETS = ("host", "rpi_pico2_freertos", "nucleo_h743zi_bare_metal", "rpi_pico_zephyr")
 """The targets for which sources are generated."""
+
+INSTALL = "py -m pip install ."
+GET = "Get it: winget install BrechtSanders.WinLibs.POSIX.UCRT"
+PYTHON_TESTS = 1500
+"""Tests that must pass with Python of Windows."""
 
 
 class Report:
@@ -248,6 +257,19 @@ class Run:
             raise RuntimeError(text)
         return text.strip()
 
+    def python_tests(self) -> str:
+        """Tests of `check` that need no program of Linux, with Python of Windows."""
+        listed = yaml.safe_load((HERE / "python_tests.yaml").read_text(encoding="utf-8"))
+        without = [f"--deselect={name}" for name in listed["without"]]
+        pytest = ("-m", "pytest", "-q", "-m", "check", "-o", "pythonpath=.", "-p", "no:cacheprovider", "--tb=line")
+        done = self.computer.run(
+            self.computer.python, *pytest, *listed["tests"], *without, cwd=self.source, timeout=7200
+        )
+        last = expect(done).splitlines()[-1]
+        if int(last.partition(" passed")[0]) < PYTHON_TESTS:
+            raise RuntimeError(last)
+        return last
+
     def all(self, report: Report) -> None:
         jiwy = ("--model", "examples/jiwy/model", "--bindings", "examples/jiwy/jiwy.bindings.yaml")
         pico = ("--tcf", "rpi_pico2_freertos_jiwy.tcf", *jiwy)
@@ -269,6 +291,92 @@ class Run:
         report.step("epg live COM7 for 60 s", self.live)
 
 
+class User:
+    """A person with a checkout in the folder ``source``, who types commands."""
+
+    def __init__(self, computer: Computer, source: Path, wheel: Path) -> None:
+        self.computer, self.source, self.wheel = computer, source, wheel
+
+    def readme(self) -> str:
+        """README's commands for Windows.  pip under Wine does not build: it installs the wheel that Linux has built."""
+        text = (self.source / "README.md").read_text(encoding="utf-8")
+        lines = "".join(re.findall(r"^```powershell\n(.*?)^```", text, re.MULTILINE | re.DOTALL)).splitlines()
+        for line in lines:
+            installed = f"py -m pip install --no-index --no-deps --force-reinstall {windows(self.wheel)}"
+            self.computer.type(installed if line == INSTALL else line, self.source)
+        for made in ("build/jiwy/tracking.csv", "build/jiwy/tracking.png", "my_robot/CMakeLists.txt"):
+            if INSTALL not in lines or not (self.source / made).is_file():
+                raise RuntimeError(f"README's commands have not made {made}")
+        return f"{len(lines)} commands"
+
+    def refused(self, command: str, *words: str) -> str:
+        """A command of CMake that EPG refuses, with ``words`` in the message."""
+        text = " ".join(self.computer.type(command, self.source, status=1).split())
+        for word in words:
+            if word not in text:
+                raise RuntimeError(text[-3000:])
+        return words[0]
+
+    def without_compiler(self) -> str:
+        gcc = self.computer.scripts / "gcc.exe"
+        gcc.rename(gcc.with_suffix(".away"))
+        try:
+            return self.refused(
+                "cmake -S examples/jiwy -B build/no_gcc -G Ninja", "EPG: this computer has no C compiler.", GET
+            )
+        finally:
+            gcc.with_suffix(".away").rename(gcc)
+
+    def other_places(self) -> str:
+        """The build folder is on another drive, in the home folder of a user called Jörg Groß."""
+        home = self.computer.prefix / "drive_c/users/Jörg Groß"
+        shutil.rmtree(home, ignore_errors=True)
+        home.mkdir()
+        build = r"C:\users\Jörg Groß\build"
+        run = partial(self.computer.run, cwd=self.source)
+        expect(run("cmake.exe", "-S", "examples/jiwy", "-B", build, "-G", "Ninja", "-DCMAKE_C_COMPILER=gcc"))
+        text = expect(run("cmake.exe", "--build", build, "--target", "tracking"))
+        if "warning:" in text or not (home / "build/tracking.csv").is_file():
+            raise RuntimeError(text[-3000:])
+        return "built and simulated"
+
+    def command_file(self) -> str:
+        """The command file of 20-sim finds EPG where README's commands have installed it."""
+        folder = self.source.parent / "export of JIWY (1)"
+        shutil.rmtree(folder, ignore_errors=True)
+        generate_from(ROOT / "examples/jiwy/model/tokens.xml", folder)
+        os.environ["XXSIM_SCRIPT_MODE"] = "1"  # no window opens
+        text = self.computer.type("open_in_epg.cmd", folder)
+        if "Next: connect its ports in the browser:" not in text:
+            raise RuntimeError(text)
+        return text.splitlines()[0]
+
+    def network(self) -> str:
+        """The checkout is in a folder of the network, and so is the folder for the generated files."""
+        share = self.computer.prefix / "dosdevices/unc/server/share"
+        share.parent.mkdir(parents=True, exist_ok=True)
+        share.unlink(missing_ok=True)
+        share.symlink_to(self.source.parent)
+        jiwy, output = r"\\server\share\epg\examples\jiwy", r"\\server\share\generated"
+        command = (
+            f"py -m epg generate jiwy --tcf host_jiwy.tcf --model {jiwy}\\model --bindings {jiwy}\\jiwy.bindings.yaml"
+        )
+        self.computer.type(f"{command} --output {output}", self.source)
+        return f"{len(list((share / 'generated').glob('*')))} files"
+
+    def all(self, report: Report) -> None:
+        report.step("README's commands", self.readme)
+        nmake = "cmake -S examples/jiwy -B build/nmake"
+        report.step(
+            "CMake's own generator",
+            partial(self.refused, nmake, "EPG: CMake uses the generator 'NMake Makefiles'", GET),
+        )
+        report.step("no compiler", self.without_compiler)
+        report.step("another drive, a user called Jörg Groß", self.other_places)
+        report.step("a folder of the network", self.network)
+        report.step("20-sim's command file", self.command_file)
+
+
 def main(arguments: Sequence[str]) -> int:
     if not is_here():
         print(MISSING)
@@ -283,7 +391,9 @@ def main(arguments: Sequence[str]) -> int:
     report.step("Python", computer.install_python)
     report.step("EPG's wheel", lambda: here(*pip))
     report.step("installation", lambda: computer.install(*wheels.glob("*.whl")))
-    Run(computer, ROOT, folder / "work").all(report)
+    here_run = Run(computer, ROOT, folder / "work")
+    here_run.all(report)
+    report.step("tests of check with Windows' Python", here_run.python_tests)
     changed = folder / "Größe und Maß/epg"
     shutil.rmtree(changed, ignore_errors=True)
     clone = ("git", "-c", "core.autocrlf=true", "clone", "-q", "--no-hardlinks", str(ROOT), str(changed))
@@ -295,6 +405,7 @@ def main(arguments: Sequence[str]) -> int:
     for target in TARGETS:
         report.step(f"epg generate {target} from it", partial(run.generated, target))
     report.step("cmake --build --target tracking in it", partial(run.main_job, "Ninja"))
+    User(computer, changed, next(iter(wheels.glob("*.whl")))).all(report)
     computer.end()
     print(f"{report.passed} passed, {report.failed} failed")
     return 1 if report.failed else 0

@@ -26,8 +26,11 @@ PACKAGES = (
     *("pip", "PyYAML", "jinja2", "MarkupSafe", "jsonschema", "attrs", "rpds-py", "referencing"),
     *("jsonschema-specifications", "typing-extensions", "numpy<2.2", "matplotlib", "contourpy", "cycler", "fonttools"),
     *("kiwisolver", "packaging", "pillow", "pyparsing", "python-dateutil", "six", "cmake", "ninja"),
+    *("pytest", "iniconfig", "pluggy", "pygments", "colorama", "hypothesis", "sortedcontainers"),
 )
 """Packages of Windows' Python.  numpy 2.2 and newer need crealf(), which Wine 8 does not have."""
+PY = '@setlocal\r\n@set "words=%*"\r\n@if "%~1"=="-3" set "words=%words:~3%"\r\n@"{}" %words%\r\n'
+"""The command ``py`` of Windows' Python."""
 MISSING = (
     "Wine and mingw-w64 are not installed: sudo apt install --no-install-recommends wine wine64 gcc-mingw-w64-x86-64"
 )
@@ -114,6 +117,13 @@ class Computer:
             raise
         return subprocess.CompletedProcess(command, process.returncode, output, errors)
 
+    def type(self, line: str, cwd: Path, status: int = 0) -> str:
+        """Runs a line as a user types it at the prompt of ``cmd``, and returns what it printed."""
+        done = self.run("cmd", "/c", *line.split(), cwd=cwd)
+        if done.returncode != status:
+            raise RuntimeError(f"status {done.returncode}: {line}\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}")
+        return done.stdout + done.stderr
+
     def boot(self) -> None:
         """Makes Wine's files: 700 MB in a few seconds."""
         self.folder.mkdir(parents=True, exist_ok=True)
@@ -132,6 +142,7 @@ class Computer:
         for name in ("ar", "ranlib"):
             shutil.copy(self.scripts / "gcc.exe", self.scripts / f"{name}.exe")
         shutil.copy(HERE / "forward.sh", self.scripts)
+        (self.scripts / "py.bat").write_bytes(PY.format(windows(self.python)).encode())
         system = self.prefix / "drive_c/windows/system32"
         compile_for_windows(system / "bcryptprimitives.dll", [HERE / "random.c"], "-shared", "-ladvapi32")
 

@@ -4,10 +4,12 @@
 PATH=/usr/bin:/bin
 export LC_ALL=C.UTF-8
 job="$1"
+drive_c="${job%/tools/jobs/*}/wine/drive_c"
 
 # A path of Wine as Linux sees it.  A definition (-D...) can have backslashes that belong to a text of C.
 linux() {
     local word="${1//\\//}"
+    word="${word//[Cc]:\//$drive_c/}"
     printf '%s' "${word//[Zz]:\//\/}"
 }
 
@@ -19,7 +21,7 @@ for word in "${words[@]:2}"; do
     case "$word" in
     -D*) arguments+=("$word") ;;
     @*) # a file with arguments
-        sed 's,\\,/,g; s,[Zz]:/,/,g' "$(linux "${word#@}")" >"$job.response"
+        sed "s,\\\\,/,g; s,[Cc]:/,$drive_c/,g; s,[Zz]:/,/,g" "$(linux "${word#@}")" >"$job.response"
         arguments+=("@$job.response")
         ;;
     *) arguments+=("$(linux "$word")") ;;
