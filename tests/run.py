@@ -65,6 +65,7 @@ class Progress:
     """Passes the output of ctest on, and says what runs if nothing has been printed for some time."""
 
     def __init__(self) -> None:
+        self._began = time.monotonic()  # it is printed
         self._running: dict[str, str] = {}
         self.ran = 0
         """How many tests of ctest have ended."""
@@ -81,17 +82,20 @@ class Progress:
             arrived.put(None)
 
         threading.Thread(target=read, daemon=True).start()
-        began = time.monotonic()
         while True:
             try:
                 line = arrived.get(timeout=silence)
             except queue.Empty:
-                yield f"        after {_duration(time.monotonic() - began)}: {', '.join(self._running.values())} ...\n"
+                yield f"        after {self.took()}: {', '.join(self._running.values())} ...\n"
                 continue
             if line is None:
                 return
             self._read(line)
             yield line
+
+    def took(self) -> str:
+        """The time since its begin."""
+        return "{} min {} s".format(*divmod(round(time.monotonic() - self._began), 60))  # it is printed
 
     def _read(self, line: str) -> None:
         if started := re.match(r" *Start +(\d+): (\S+)", line):
@@ -109,7 +113,6 @@ def main(arguments: list[str]) -> int:
         return _run_alone(options.tier)
     log = options.build / "outcomes.jsonl"
     log.unlink(missing_ok=True)
-    began = time.monotonic()
     environment = {**os.environ, "EPG_TEST_LOG": str(log)}
     command = [options.ctest, "--output-on-failure", "--parallel", str(options.jobs), "--no-tests=error"]
     command += ["--label-regex", LABELS[options.tier]]
@@ -135,13 +138,8 @@ def main(arguments: list[str]) -> int:
     failed = failures(outcomes, progress.failed, options.build)
     if failed:
         print(f"{len(failed)} failed. Each command runs one alone:", *failed, sep="\n  ")
-    print(f"{options.tier}: {summary(outcomes, progress.ran, len(failed))}, {_duration(time.monotonic() - began)}")
+    print(f"{options.tier}: {summary(outcomes, progress.ran, len(failed))}, {progress.took()}")
     return ctest.returncode or bool(unexpected)
-
-
-def _duration(seconds: float) -> str:
-    minutes, seconds = divmod(round(seconds), 60)
-    return f"{minutes} min {seconds} s"
 
 
 def _run_alone(test: str) -> int:

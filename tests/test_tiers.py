@@ -9,7 +9,6 @@ import os
 import re
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -44,6 +43,7 @@ from tests.tiers import (
     text_of,
     unused,
 )
+from tests.waiting import until
 
 ROOT = TESTS.parent
 VERB = re.compile(" (?:is not|are not|does not|cannot|names no) ")
@@ -224,13 +224,14 @@ def test_no_long_time_passes_without_a_line_and_failures_are_named_at_the_end() 
         yield "      Start  2: tests.cli\n"
         yield f"      Start 11: {group}\n"
         yield " 1/3 Test  #2: tests.cli ...................   Passed   84.84 sec\n"
-        time.sleep(0.3)
+        until(lambda: any("after" in line for line in lines))
         yield f" 2/3 Test #11: {group} ...........***Failed    1.00 sec\n"
         yield "      Start 12: tests.cmake.test_stamp\n"
         yield " 3/3 Test #12: tests.cmake.test_stamp ...........***Timeout   1.00 sec\n"
 
     progress = Progress()
-    lines = list(progress.follow(ctest(), silence=0.1))
+    lines: list[str] = []
+    lines.extend(progress.follow(ctest(), silence=0.1))
     assert lines[3] == f"        after 0 min 0 s: {group} ...\n"
     assert [line for line in lines if "after" not in line] == list(ctest())
     assert progress.failed == [group, "tests.cmake.test_stamp"]

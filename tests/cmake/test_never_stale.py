@@ -222,7 +222,7 @@ class Reads:
         return self.project.configure(f"-DEPG_DIR={self.epg.cmake}", generator=generator, epg_dir=False)
 
     def build(self, *arguments: str) -> str:
-        time.sleep(0.02)
+        time.sleep(0.02)  # earlier edits must be older than the files that follow
         return self.project.build(*arguments)
 
     def generated(self, name: str) -> str:

@@ -293,9 +293,9 @@ def test_a_cancelled_build_leaves_no_process_and_goes_on_later(
         return build.state()["step"] == step and build.lines(0) and build.state()["done"] >= (step == "build")
 
     until(begun, lambda: build.lines(0), 120)
-    began = time.monotonic()
+    began = time.monotonic()  # the time that a user waits
     build.cancel()
-    assert time.monotonic() - began < 1, "the user who cancels does not wait"
+    assert time.monotonic() - began < 1, "the user who cancels does not wait"  # the time that a user waits
     assert build.wait(20)
     assert processes(folder) == []
     assert (build.state()["state"], build.state()["products"]) == ("cancelled", [])

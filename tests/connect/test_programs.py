@@ -6,7 +6,6 @@ from __future__ import annotations
 import os
 import shutil
 import signal
-import time
 from pathlib import Path
 from urllib.parse import quote
 
@@ -53,9 +52,8 @@ def test_a_program_runs_until_it_is_stopped(built: Path, tmp_path: Path, monkeyp
             with pytest.raises(Denied, match="a program is running") as refusal:
                 page.post(action, path=product["path"])
             assert refusal.value.status == 409
-        time.sleep(1)
-        assert len(processes(built)) == 1
-        first = page.state()["live"]["ports"][0]
+        until(lambda: len(processes(built)) == 1)
+        first = page.until(lambda state: state["live"]["ports"])["live"]["ports"][0]
         assert first == {"path": str(built / "build/robot_host.port"), "device": "the program that runs"}
         page.post("live/connect", path=first["path"])
         assert page.state()["live"]["target"]["matches"], "its hash is that of the build"
@@ -70,7 +68,7 @@ def test_a_program_runs_until_it_is_stopped(built: Path, tmp_path: Path, monkeyp
         # The session ends: so does the program.
         page.post("run", path=product["path"])
         page.until(lambda state: state["program"]["state"] == "running")
-        time.sleep(0.5)
+        until(lambda: processes(built))
     assert not processes(built)
 
 

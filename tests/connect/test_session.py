@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import difflib
+import itertools
 import shutil
 import threading
 import time
@@ -295,7 +296,6 @@ def test_two_pages_see_the_same(pages: Callable[[], Page]) -> None:
     seen = {}
     waiting = threading.Thread(target=lambda: seen.update(other.state(version)))
     waiting.start()
-    time.sleep(0.2)
     done = page.connect("pwm_pan", "pwm_tilt")
     waiting.join(10)
     assert seen == done == page.state()
@@ -364,7 +364,7 @@ def test_a_conflict_is_the_users_to_solve(page: Page, bindings: Path) -> None:
     assert bindings.read_text() == broken
     # configurations arrive later, in a new version
     version = page.until(lambda state: state["configurations"])["version"]
-    time.sleep(1.2)
+    time.sleep(1.2)  # two looks at the files, without an event
     assert page.json(f"api/state?after={version - 1}")["version"] == version, "a conflict is told once"
     state = page.post("save", anyway=True)
     assert state["draft"]["conflict"] is None and not state["draft"]["changed"]
@@ -646,8 +646,7 @@ def test_an_answer_comes_at_once(tmp_path: Path) -> None:
     with serving(session_of(folder)) as page:
         page.until(lambda state: state["configurations"])
         times = []
-        for number in range(8):
-            begin = time.process_time()
+        for number in range(9):
+            times.append(time.process_time())  # processor time of an edit, with the server's threads
             page.connect("setpoint_pan", "tilt_subscriber", scale=number + 1)
-            times.append(time.process_time() - begin)
-        assert min(times) < 0.5
+        assert min(after - before for before, after in itertools.pairwise(times)) < 0.5

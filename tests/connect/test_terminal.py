@@ -11,7 +11,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -24,6 +23,7 @@ from epg.connect.terminal.dialog import run
 from tests.connect.builds import processes
 from tests.connect.page import session_of
 from tests.connect.robots import own_axis_project, with_second_target
+from tests.waiting import until
 
 ROOT = Path(__file__).resolve().parents[2]
 MODEL = ROOT / "examples/jiwy/model"
@@ -139,16 +139,20 @@ def test_in_a_terminal_a_build_takes_one_line(export: Path, tmp_path: Path) -> N
         ("to continue: ", ""),
         ("build? (y/n) [y]: ", ""),
     ]
-    seen, until = "", time.monotonic() + 240
-    while True:
+    seen = ""
+
+    def ended() -> bool:
+        nonlocal seen
         if dialog and dialog[0][0] in seen.rpartition("\n")[2]:
             os.write(parent, f"{dialog.pop(0)[1]}\n".encode())
-        assert time.monotonic() < until, seen
         if select.select([parent], [], [], 0.1)[0]:
             try:
                 seen += os.read(parent, 65536).decode().replace("\r\n", "\n")
             except OSError:  # the other end is closed
-                break
+                return True
+        return False
+
+    until(ended, lambda: seen, 240, pause=0.0)
     os.close(parent)
     assert process.wait(10) == 0, seen
     assert not dialog
@@ -298,11 +302,13 @@ def test_conversions_can_be_changed_and_taken_away(project: Path, bindings: Path
 def test_edits_outside_are_noticed_and_never_overwritten_unasked(project: Path, bindings: Path) -> None:
     open_ports(bindings, "pwm_pan", "pwm_tilt")
 
+    session = session_of(project)
+
     def edit() -> None:
         bindings.write_text("# mine\n" + bindings.read_text())
-        time.sleep(1)  # files are checked twice a second
+        until(lambda: session.wait(session.state()["version"], 1)["draft"]["external"])
 
-    _, said = talk(session_of(project), "", edit, "", "", "y", "n")
+    _, said = talk(session, "", edit, "", "", "y", "n")
     assert "another program changed" in " ".join(said.split())
     assert ": your change was applied to the new text" in " ".join(said.split())
     text = bindings.read_text()
@@ -313,11 +319,13 @@ def test_a_conflict_with_edits_outside_is_asked_about(project: Path, bindings: P
     text = open_ports(bindings, "pwm_pan", "pwm_tilt")
     theirs = "inputs: ["  # no change can be applied to this text
 
+    session = session_of(project)
+
     def edit() -> None:
         bindings.write_text(theirs)
-        time.sleep(1)  # files are checked twice a second
+        until(lambda: session.wait(session.state()["version"], 1)["draft"]["conflict"])
 
-    status, said = talk(session_of(project), "", "", edit, "", "y", "")
+    status, said = talk(session, "", "", edit, "", "y", "")
     assert status == 1 and "save anyway, and overwrite the other program's changes? (y/n) [n]" in said
     assert bindings.read_text() == theirs
     bindings.write_text(text)

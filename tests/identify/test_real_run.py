@@ -15,7 +15,6 @@ import shlex
 import shutil
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import pairwise
@@ -30,6 +29,7 @@ from epg.live.client import Client
 from epg.live.port import SerialPort
 from epg.live.rows import Recorder, Stream
 from epg.runs.csv_file import CsvFile
+from tests.live.target import let_pass
 from tests.waiting import until
 
 bootstrap.ensure("plot")
@@ -184,15 +184,15 @@ def test_a_step_while_the_robot_is_enabled_gives_the_same_values(project: Projec
         client = Client(port)
         try:
             client.enable()
-            time.sleep(5.0)  # homing
+            let_pass(client, 5.0)  # homing
             sink = CsvFile(project.folder / "step.csv", names)
             recording = Recorder(Stream(names), [sink])
             known = [signal.name for signal in client.description.streamed]
             recording.start(client, [known.index(name) for name in names], 1)
             for setpoint in (1.2, 0.4):
-                time.sleep(0.1)
+                let_pass(client, 0.1)
                 client.command(f"pan_subscriber={setpoint}")
-                time.sleep(0.6)
+                let_pass(client, 0.6)
             client.stop_stream()
             recording.drain()
             sink.close()

@@ -6,8 +6,9 @@ from __future__ import annotations
 import os
 import select
 import subprocess
-import time
 from pathlib import Path
+
+from tests.waiting import until
 
 PATIENCE = 20.0  # seconds to wait for an answer, on a machine that also runs other programs
 
@@ -27,12 +28,9 @@ class Lines:
             data = data[os.write(self._write, data[:4096]) :]
 
     def receive(self, seconds: float) -> list[str]:
-        """The lines that arrive within that time; returns as soon as there are some."""
-        end = time.monotonic() + seconds
+        """The lines that arrive; returns after that time without a byte, or as soon as there are some."""
         found: list[str] = []
-        while not found and (left := end - time.monotonic()) > 0:
-            if not select.select([self._read], [], [], left)[0]:
-                break
+        while not found and select.select([self._read], [], [], seconds)[0]:
             data = os.read(self._read, 65536)
             if not data:
                 break
@@ -44,16 +42,17 @@ class Lines:
 
     def until(self, *beginnings: str) -> list[str]:
         """The lines up to and including the first that begins with one of ``beginnings``."""
-        got: list[str] = []
-        end = time.monotonic() + PATIENCE
-        while time.monotonic() < end:
+
+        def came() -> list[str]:
             for number, line in enumerate(self.lines):
                 if line.startswith(beginnings):
                     got = self.lines[: number + 1]
                     del self.lines[: number + 1]
                     return got
             self.receive(0.5)
-        raise AssertionError(f"no line begins with {beginnings}: {self.lines}")
+            return []
+
+        return until(came, lambda: f"no line begins with {beginnings}: {self.lines}", pause=0.0)
 
     def ask(self, command: str) -> list[str]:
         """The answer to a command, whose first word names the answer; other lines are skipped."""

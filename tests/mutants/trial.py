@@ -9,7 +9,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -31,7 +30,7 @@ class Copy:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._tree = folder / "epg"
-        self._stamp = time.time()
+        self._stamp = folder.stat().st_mtime
         for name in listed("--cached", "--others", "--exclude-standard"):
             (self._tree / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(ROOT / name, self._tree / name)

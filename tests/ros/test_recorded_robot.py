@@ -57,10 +57,10 @@ def test_messages_of_any_type(net: Network, jiwy: Path, tmp_path: Path, capsys: 
 
     def command() -> None:
         until((tmp_path / "run/topics.csv").is_file)
-        time.sleep(2.0)
+        until(lambda: len(writer.get_matched_subscriptions()) == 2)  # the robot and the recorder
         for number in range(20):
             writer.write(gripper(header, True, 1, [0.0, number / 100, 0.0], -7, "left", number / 50))
-            time.sleep(0.02)
+            time.sleep(0.02)  # the period of the setpoints
 
     robot = net.run(sensors, "--quiet", "--duration", "6", "--serial", "host")
     thread = threading.Thread(target=command)
@@ -96,10 +96,10 @@ def test_jiwy(jiwy: Path, net: Network, tmp_path: Path, capsys: pytest.CaptureFi
 
     def command() -> None:
         until((tmp_path / "run/topics.csv").is_file)
-        time.sleep(3.0)
+        until(lambda: len(writer.get_matched_subscriptions()) == 2)  # the robot and the recorder
         for setpoint in SETPOINTS:
             writer.write(msg.Float64(setpoint))
-            time.sleep(0.033)
+            time.sleep(0.033)  # the period of the setpoints
 
     robot = net.run(jiwy, "--quiet", "--duration", "8", "--trace", str(trace))
     thread = threading.Thread(target=command)

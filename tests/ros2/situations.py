@@ -183,13 +183,13 @@ def _publish(
     publishers: Mapping[str, Publisher], profiles: Mapping[str, Profile], duration: float, monitoring: Peer
 ) -> tuple[float, float]:
     """Publishes at integer multiples of the period, without drift; returns time 0 and the largest delay."""
-    begin = time.monotonic()
+    begin = time.monotonic()  # the profile's time, compared with the robots' traces
     number, latest = 0, 0.0
     while (due := number * PERIOD) < duration:
-        latest = max(latest, time.monotonic() - begin - due)
         for topic, publisher in publishers.items():
             publisher.publish(Float64_(profiles[topic].value(due)))
         number += 1
-        while (left := begin + number * PERIOD - time.monotonic()) > 0:
+        while (left := begin + number * PERIOD - time.monotonic()) > 0:  # the period of the setpoints
             monitoring.spin(left)
+        latest = max(latest, -left)
     return begin, latest

@@ -12,7 +12,6 @@ import signal
 import statistics
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -368,16 +367,17 @@ def test_the_loop_keeps_its_cycles_under_a_flood(jiwy: Path, net: Network, tmp_p
         assert peer.spin_until(lambda: pan.matched == 1 and tilt.matched == 1 and bool(told.received))
         quiet = cycles_of(peer, told)
         before = cycles_of(peer, told)
-        end = time.monotonic() + 2.0
-        while time.monotonic() < end:
-            pan.writer.write(Float64_(0.5))
-            tilt.writer.write(Float64_(0.25))
-            pan.sent.append((0.0, None))
-        assert len(pan.sent) > 2000
-        cycles_of(peer, told)
-        after = cycles_of(peer, told)
+        after = before
+        sent = 0
+        while sum(after) - sum(before) < 2000:
+            seen = len(told.received)
+            while not peer.spin_until(lambda seen=seen: len(told.received) > seen, 0.0):  # type: ignore[misc]
+                sent += 1
+                pan.writer.write(Float64_(0.5))
+                tilt.writer.write(Float64_(0.25))
+            after = cycles_of(peer, told)
+        assert sent > 2000
         ticks = sum(after) - sum(before)
-        assert ticks > 1900
         idle_share = (before[1] - quiet[1]) / (sum(before) - sum(quiet))
         assert (after[1] - before[1]) / ticks <= idle_share + 0.05
 
@@ -424,7 +424,7 @@ def test_messages_of_several_values(build_checked: Build, net: Network, tmp_path
     intervals = [after - before for before, after in itertools.pairwise(stamps)]
     assert statistics.median(intervals) == pytest.approx(0.033, abs=0.0015), intervals
     assert min(intervals) > 0.0, intervals
-    assert abs(stamps[-1] - time.time()) < 60.0
+    assert abs(stamps[-1] - tmp_path.stat().st_mtime) < 60.0
     positions = set(zip(jiwy_robot.signal("outputs.pan_logging"), jiwy_robot.signal("outputs.tilt_logging")))
     # each message is from one control cycle
     assert {tuple(message.position) for message in states.messages[2:]} <= positions
@@ -452,7 +452,7 @@ def test_messages_of_any_type(build_checked: Build, net: Network, tmp_path: Path
     assert last.header.frame_id == "imu_link" and last.orientation.w == 1.0
     assert list(last.orientation_covariance) == [-1.0] + [0.0] * 8
     assert list(last.angular_velocity_covariance) == [0.01, 0, 0, 0, 0.01, 0, 0, 0, 0.01]
-    assert abs(last.header.stamp.sec - time.time()) < 60.0
+    assert abs(last.header.stamp.sec - tmp_path.stat().st_mtime) < 60.0
     positions = set(zip(jiwy_robot.signal("outputs.pan_logging"), jiwy_robot.signal("outputs.tilt_logging")))
     sent = {(message.angular_velocity.z, message.linear_acceleration.x) for message in measured.messages[2:]}
     assert sent <= positions

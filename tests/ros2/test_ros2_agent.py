@@ -75,10 +75,10 @@ node = rclpy.create_node("watch")
 
 def wait(condition, seconds):
     "The seconds until the condition is true; None if that takes longer than `seconds`."
-    began = time.monotonic()
-    while time.monotonic() < began + seconds:
+    began = time.monotonic()  # the time that a user waits
+    while (took := time.monotonic() - began) < seconds:  # the time that a user waits
         if condition():
-            return time.monotonic() - began
+            return took
         rclpy.spin_once(node, timeout_sec=0.05)
     return None
 

@@ -16,7 +16,7 @@ from .spin import check_search, needs_spin, spin
 MODEL = Path(__file__).resolve().parent / "handover.pml"
 HANDOVER = RUNTIME / "include" / "epg" / "handover.h"
 STRESS = SOURCES / "handover_stress.c"
-PATIENCE = "60"  # a broken handover ends at its first wrong block
+PATIENCE = "1000000"  # rounds: a broken handover ends at its first wrong block
 
 BROKEN_MODELS = {
     "BROKEN_GIVER_DOES_NOT_ASK",
@@ -61,19 +61,11 @@ def test_all_broken_models_are_tried() -> None:
 
 def test_two_threads_lose_nothing(tmp_path: Path) -> None:
     program = compile_program(tmp_path / "stress", [STRESS], options=["-O2"])
-    count = 0
-    for seconds in ("1", "10", "60"):  # a round takes a few milliseconds if the threads share one processor
-        done = run_program([program, seconds])
-        assert done.returncode == 0, done.stdout
-        rounds = re.search(r"rounds (\d+)", done.stdout)
-        assert rounds is not None
-        count = int(rounds[1])
-        if count > 1000:
-            break
-    assert count > 1000
+    done = run_program([program, "2000"])
+    assert (done.returncode, done.stdout) == (0, "rounds 2000\n")
 
 
-def under_thread_sanitizer(folder: Path, header: Path, seconds: str) -> tuple[int, str]:
+def under_thread_sanitizer(folder: Path, header: Path, rounds: str) -> tuple[int, str]:
     """Exit status and report; 66, immediately, if ThreadSanitizer detects an error."""
     include = folder / "include" / "epg"
     include.mkdir(parents=True)
@@ -82,15 +74,15 @@ def under_thread_sanitizer(folder: Path, header: Path, seconds: str) -> tuple[in
     source.write_text(STRESS.read_text().replace('"epg/handover.h"', f'"{include / "handover.h"}"'))
     program = compile_program(folder / "races", [source], options=["-O1", *THREAD_SANITIZER])
     environment = {"TSAN_OPTIONS": "halt_on_error=1 exitcode=66"}
-    done = run_program([program, seconds], environment=environment)
+    done = run_program([program, rounds], environment=environment)
     if "unexpected memory mapping" in done.stderr:
         # This ThreadSanitizer does not support the address-space randomisation of newer kernels.
-        done = run_program(["setarch", platform.machine(), "-R", program, seconds], environment=environment)
+        done = run_program(["setarch", platform.machine(), "-R", program, rounds], environment=environment)
     return done.returncode, done.stdout + done.stderr
 
 
 def test_thread_sanitizer_finds_no_race(tmp_path: Path) -> None:
-    status, report = under_thread_sanitizer(tmp_path, HANDOVER, "1")
+    status, report = under_thread_sanitizer(tmp_path, HANDOVER, "1000")
     assert status == 0, report
 
 

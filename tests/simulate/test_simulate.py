@@ -271,6 +271,7 @@ def test_an_executable_that_is_none(tmp_path: Path) -> None:
 def test_an_executable_that_hangs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(interface_module, "patience", lambda duration: 0.5)
     with pytest.raises(UserError) as error:
+        # a controller that is too slow
         simulate(script(tmp_path, "import time; time.sleep(60)\n"), scenario(tmp_path), tmp_path / "out")
     assert problems(error) == ["simulation-failed: 'program' did not end"]
 

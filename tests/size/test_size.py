@@ -88,4 +88,4 @@ def test_a_place_in_real_time_is_found(tmp_path: Path) -> None:
         list(real_time(["tests/a.c", "tests/a.mjs", "tests/a.py"], kind, tmp_path)) for kind in LIMITS["real_time"]
     )
     assert clocks == [("tests/a.c:1", "it */"), ("tests/a.mjs:2", ""), ("tests/a.py:1", "")]
-    assert sleeps == [("tests/a.c:2", "it */"), ("tests/a.mjs:1", "it"), ("tests/a.py:3", "it")]
+    assert sleeps == [("tests/a.c:2", ""), ("tests/a.mjs:1", "it"), ("tests/a.py:3", "it")]

@@ -13,7 +13,6 @@ import re
 import shutil
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -37,21 +36,20 @@ PYTHON_TESTS = 1500
 
 
 class Report:
-    """Counts the steps, and prints each with its time."""
+    """Counts the steps, and prints each."""
 
     def __init__(self) -> None:
         self.passed, self.failed = 0, 0
 
     def step(self, name: str, work: Callable[[], str | None]) -> None:
         """Runs one step, which returns a remark, and fails by an exception."""
-        began = time.monotonic()
         try:
             result = f"passed  {name}: {work() or 'good'}"
             self.passed += 1
         except Exception as error:
             result = f"FAILED  {name}: {type(error).__name__}: {error}"
             self.failed += 1
-        print(f"{result} ({time.monotonic() - began:.0f} s)", flush=True)
+        print(result, flush=True)
 
 
 def expect(done: subprocess.CompletedProcess[str], status: int = 0) -> str:
@@ -157,7 +155,6 @@ class Run:
                     ["cmake", "--build", str(ours), "--target", "tracking"], capture_output=True, text=True, check=False
                 )
             )
-        began = time.monotonic()
         python = f"-DPython3_EXECUTABLE=Z:{self.computer.python}"
         example = self.source / "examples/jiwy"
         expect(
@@ -165,7 +162,6 @@ class Run:
                 "cmake.exe", "-S", example, "-B", build, "-G", generator, "-DCMAKE_C_COMPILER=gcc", python
             )
         )
-        configured = time.monotonic() - began
         text = expect(self.computer.run("cmake.exe", "--build", build, "--target", "tracking"))
         if "warning:" in text:
             raise RuntimeError(text[-3000:])
@@ -174,7 +170,7 @@ class Run:
         # The reference is an ideal loop, calculated with the C library's sine, which differs in the last digits.
         same_columns(ours / "tracking.csv", build / "tracking.csv", ("reference",))
         pictures = len(list(build.glob("**/tracking.png")))
-        return f"{count} files and {rows} rows are equal; {pictures} plot; configured in {configured:.0f} s"
+        return f"{count} files and {rows} rows are equal; {pictures} plot"
 
     def described(self) -> str:
         description = "linux_host/jiwy.json"  # what `epg generate host` has written

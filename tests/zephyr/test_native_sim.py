@@ -19,8 +19,8 @@ import pytest
 from epg.simulate import simulate
 from tests.doubles.toolchain import ROOT, Missing, arm_gcc, skip_if_missing, xrce_libraries
 from tests.doubles.xrce_agent import Agent, PtyLink, UdpLink, float64
-from tests.middlewares.client import Host, Lines, values
-from tests.middlewares.xrce.follow import follow
+from tests.middlewares.client import Host, Lines, stat, values
+from tests.middlewares.xrce.follow import PERIOD, follow
 from tests.waiting import until
 
 from .workspace import NATIVE, build, workspace
@@ -173,7 +173,7 @@ def test_a_node_over_udp(image: Path, agent: Agent) -> None:
             assert process.stderr is not None
             assert process.stderr.readline() == f"jiwy: connected to the agent at {agent.address}\n"
             agent.topics.publish("rt/pan_subscriber", float64(0.5), reliable=False)
-            time.sleep(3.5)  # both axes find their end stops
+            agent.wait_until(lambda: len(agent.topics.samples("rt/pan_publisher")) > 3.5 / PERIOD)  # it is homing
             assert follow(agent, 2.5) < 0.12
             agent.kill()
             assert process.stderr.readline() == f"jiwy: lost the agent at {agent.address}\n"
@@ -193,10 +193,10 @@ def test_a_node_over_a_terminal(image: Path, tmp_path: Path) -> None:
         with start(command) as process:
             try:
                 agent.topics.wait_for_reader("rt/pan_subscriber")
-                before = len(agent.topics.samples("rt/pan_publisher", 0.0))
+                since = agent.topics.count
                 agent.topics.wait_for_sample("rt/pan_publisher")
-                time.sleep(1.0)
-                count = len(agent.topics.samples("rt/pan_publisher", 0.0)) - before
+                time.sleep(1.0)  # this program tells no time
+                count = len(agent.topics.samples("rt/pan_publisher", since))
                 assert 20 <= count <= 40, "every 33 ms of real time"
                 process.terminate()
                 assert process.communicate(timeout=PATIENCE)[1] == ""
@@ -208,10 +208,8 @@ def test_console_on_standard_input_and_output(image: Path) -> None:
     with Host(image, "--quiet") as console:
         assert console.ask("pan_subscriber=0.1 tilt_subscriber=-2.5e-3") == ["ok setpoint"]
         assert console.ask("watch setpoint_pan setpoint_tilt") == ["ok watch"]
-        console.lines.clear()
-        time.sleep(0.2)
-        console.receive(1)
-        assert values(console.until("watch ")[-1]) == {"inputs.setpoint_pan": 0.1, "inputs.setpoint_tilt": -0.0025}
+        wanted = {"inputs.setpoint_pan": 0.1, "inputs.setpoint_tilt": -0.0025}
+        until(lambda: values(console.until("watch ")[-1]) == wanted)
         assert console.close() == (0, "")
 
 
@@ -239,7 +237,7 @@ def test_console_on_a_terminal_and_an_interrupt(image: Path, tmp_path: Path) -> 
             console = Lines(file, file)
             console.until("ready ")
             assert console.ask("disable") == ["ok disable"]
-            time.sleep(0.2)
+            until(lambda: int(stat(console.ask("stats"), "cycles")) > 200)
             os.close(file)
             process.send_signal(signal.SIGINT)
             assert process.communicate(timeout=PATIENCE)[1] == ""

@@ -32,7 +32,7 @@ def cmake(which: str) -> Path:
             _install(f"cmake=={OLDEST}")
         return _program(folder)
     note = cache_folder() / "test-cmake-newest"
-    if note.is_file() and time.time() - note.stat().st_mtime < RENEW:
+    if note.is_file() and time.time() - note.stat().st_mtime < RENEW:  # the age of the cache on this computer
         return _program(cache_folder() / f"test-cmake-{note.read_text()}")
     try:
         version = _install("cmake")

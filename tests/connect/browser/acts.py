@@ -10,6 +10,15 @@ from typing import Any
 from tests import waiting
 from tests.live.target import LEASE
 
+NEWEST = "(async () => (await import(new URL('live_events.js', location))).live.times.at(-1) ?? null)()"
+"""The newest time of the target on a live page, in seconds."""
+
+
+def let_pass(evaluate: Callable[[str], Any], seconds: float) -> None:
+    """Waits until the target has run for some seconds of its own time, as a live page shows it."""
+    end = waiting.until(lambda: evaluate(NEWEST), "the page gets no values") + seconds
+    waiting.until(lambda: (evaluate(NEWEST) or 0.0) >= end, "the target does not run", 60 + 3 * seconds, pause=0.05)
+
 
 def handle(page: Any, side: str, name: str) -> Any:
     """The handle at the end of a wire, which the user can drag."""
@@ -68,7 +77,7 @@ def drive(act: Callable[[], None], is_driven: Callable[[], bool], browser: Any, 
     for _ in range(5):
         before = late(browser, *others)
         act()
-        if waiting.soon(is_driven, 3):
+        if waiting.soon(is_driven, 3):  # the page may need a second act
             return
         assert late(browser, *others) > before + LEASE, "the robot is not enabled, and the computer was not late"
     raise AssertionError("the robot is not enabled")

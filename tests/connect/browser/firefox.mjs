@@ -63,10 +63,7 @@ const acts = {
   evaluate: (expression) => page.evaluate(expression),
   click: async (selector) => page.mouse.click(...(await middle(selector))),
   hold: async (selector, ms) => {
-    await page.mouse.move(...(await middle(selector)));
-    await page.mouse.down();
-    await new Promise((resolve) => setTimeout(resolve, ms));
-    await page.mouse.up();
+    await page.mouse.click(...(await middle(selector)), { delay: ms });
   },
   drag: async (from, to) => {
     const start = await middle(from);
@@ -77,7 +74,7 @@ const acts = {
     await page.mouse.up();
   },
   focus: (selector) => page.focus(selector),
-  press: (key) => page.keyboard.press(key),
+  press: (key, delay) => page.keyboard.press(key, { delay }),
   down: (key) => page.keyboard.down(key),
   up: (key) => page.keyboard.up(key),
   type: (text) => page.keyboard.type(text),
@@ -87,9 +84,8 @@ const acts = {
     const created = new Promise((resolve) => browser.once("targetcreated", resolve));
     await acts.click(link);
     const tab = await (await created).page();
-    const end = Date.now() + 5000;
     let value = null;
-    while (!value && Date.now() < end) value = await tab.evaluate(expression).catch(() => null);
+    for (let turn = 0; !value && turn < 1000; turn++) value = await tab.evaluate(expression).catch(() => null);
     await tab.close();
     return value;
   },

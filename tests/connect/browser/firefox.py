@@ -85,9 +85,10 @@ class Firefox:
     def focus(self, selector: str) -> None:
         self._do("focus", selector)
 
-    def press(self, *keys: str) -> None:
+    def press(self, *keys: str, delay: float = 0.0) -> None:
+        """Presses keys, each for ``delay`` ms."""
         for key in keys:
-            self._do("press", key)
+            self._do("press", key, delay)
 
     def down(self, key: str) -> None:
         self._do("down", key)

@@ -6,10 +6,9 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any, Protocol
 
-from tests.waiting import soon, until
+from tests.waiting import until
 
 FIND = """(() => {
   const all = document.querySelectorAll("a[href], button, input, select, textarea, summary, [tabindex]");
@@ -44,7 +43,7 @@ HERE = """(() => {
 
 class Browser(Protocol):
     def evaluate(self, expression: str) -> Any: ...
-    def press(self, key: str) -> None: ...
+    def press(self, key: str, *, delay: float = 0.0) -> None: ...
     def down(self, key: str) -> None: ...
     def up(self, key: str) -> None: ...
     def type(self, text: str) -> None: ...
@@ -87,9 +86,7 @@ class Keys:
         self.browser.up("Shift")
 
     def hold(self, key: str, seconds: float) -> None:
-        self.browser.down(key)
-        time.sleep(seconds)
-        self.browser.up(key)
+        self.browser.press(key, delay=1000 * seconds)
 
     def it(self, expression: str) -> Any:
         return self.evaluate(f"(() => {{ const it = document.activeElement; return {expression}; }})()")
@@ -122,8 +119,10 @@ class Keys:
                 break
             act(*arguments)
             here = self.evaluate(HERE)
-            if here["covered"]:  # Firefox scrolls a little later
-                soon(lambda: not self.evaluate(HERE)["covered"], 1.0)
+            for _ in range(60):  # Firefox scrolls some frames later
+                if not here["covered"]:
+                    break
+                self.evaluate("new Promise((drawn) => requestAnimationFrame(drawn))")
                 here = self.evaluate(HERE)
             names.append(here["name"])
             if here["number"] >= 0:

@@ -19,7 +19,7 @@ from typing import Any
 from epg.generator.bootstrap import ensure
 from tests.doubles.toolchain import arm_gcc, pico_sdk
 
-from .acts import until
+from .acts import let_pass, until
 from .conftest import FLAGS, NAMES, copy_jiwy
 from .served import ROOT, Served
 
@@ -57,7 +57,7 @@ def take_pictures(folder: Path = PICTURES) -> None:
 def _start(page: Any, folder: Path) -> None:
     page.get_by_role("radio", name="rpi_pico2_bare_metal_jiwy").check()
     until(page, "document.querySelector('.picked-picture')?.naturalWidth > 0")
-    page.wait_for_timeout(1000)  # the visible cards load their small pictures
+    until(page, "[...document.images].every((each) => each.complete || each.getBoundingClientRect().top > innerHeight)")
     _take(page, folder, "start")
     page.get_by_role("button", name="Create project").click()
     page.locator(".diagram").wait_for()
@@ -113,7 +113,6 @@ def _build(page: Any, epg: Served, folder: Path) -> None:
     page.get_by_role("button", name="Generate", exact=True).click()
     page.get_by_role("dialog", name="Run these commands?").get_by_role("button", name="Run").click()
     page.locator(".outcome.done").wait_for(timeout=600_000)
-    page.wait_for_timeout(200)
     _take(page, folder, "build")
 
 
@@ -135,17 +134,17 @@ def _live(browser: Any, place: Path, folder: Path) -> None:
         page = browser.new_context(viewport=SIZE, reduced_motion="reduce").new_page()
         page.goto(epg.address)
         page.get_by_role("button", name="Enable (hold)").click(delay=700)
-        page.wait_for_timeout(6000)
+        let_pass(page.evaluate, 6.0)
         for name, value, wait in (
-            ("pan_subscriber", "1", 2500),
-            ("Pan\\PID\\kp", "0.3", 500),
-            ("pan_subscriber", "0.5", 2500),
-            ("Pan\\PID\\kp", "2.2", 1500),
+            ("pan_subscriber", "1", 2.5),
+            ("Pan\\PID\\kp", "0.3", 0.5),
+            ("pan_subscriber", "0.5", 2.5),
+            ("Pan\\PID\\kp", "2.2", 1.5),
         ):
             field = page.get_by_role("textbox", name=re.compile(f"^{re.escape(name)}( |$)"))
             field.fill(value)
             field.press("Enter")
-            page.wait_for_timeout(wait)
+            let_pass(page.evaluate, wait)
         page.evaluate("document.activeElement.blur()")
         page.locator("#panel").evaluate("panel => panel.scrollTo(0, 0)")
         _take(page, folder, "live")
@@ -160,7 +159,7 @@ def _take(page: Any, folder: Path, name: str) -> None:
     ensure("plot")  # this also installs Pillow
     from PIL import Image
 
-    page.wait_for_timeout(300)
+    page.wait_for_timeout(300)  # the end of transitions
     picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
     reduced = picture.quantize(COLOURS, dither=Image.Dither.NONE)
     reduced.save(folder / f"connect-{name}.png", optimize=True)

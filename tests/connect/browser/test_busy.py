@@ -11,7 +11,6 @@ import os
 import shutil
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -20,6 +19,7 @@ import pytest
 
 from tests.live.witness import PROJECT, Robot, build_robot
 
+from .acts import let_pass
 from .served import ROOT, Served
 
 UNITS = ("rad", "m", "V", "A", "N", "s", "K", "Hz", "Pa", "kg", "W")
@@ -66,17 +66,16 @@ def test_a_robot_stays_enabled(tmp_path: Path, open_page: Callable[..., Any], bu
         page.get_by_role("button", name="Larger").click()
         for box in page.locator(".live-signals input").all():
             box.check()
-        page.wait_for_timeout(10_000)  # the plots are full
+        let_pass(page.evaluate, 10.0)  # the plots are full
         assert page.locator(".plots canvas").count() == 13, "one for each unit, one without, one of the loop"
         busy()
         page.get_by_role("button", name="Enable (hold)").click(delay=700, timeout=60_000)
         robot.wait(driven=True)
-        end = time.monotonic() + SECONDS
-        while time.monotonic() < end:
-            time.sleep(0.5)
+        for second in range(SECONDS):
+            let_pass(page.evaluate, 1.0)
             if not robot.is_driven():
-                time.sleep(1)  # until all has arrived that shows who was late
-                pytest.fail(f"after {SECONDS - end + time.monotonic():.0f} s: {epg.state()['live']['target']['fault']}")
+                let_pass(page.evaluate, 1.0)  # until all has arrived that shows who was late
+                pytest.fail(f"after {second} s: {epg.state()['live']['target']['fault']}")
         page.keyboard.press("Space")
         robot.wait(driven=False)
         assert epg.state()["live"]["target"]["state"]["fault"] == "none"

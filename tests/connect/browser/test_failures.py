@@ -19,6 +19,7 @@ from epg.live.port import SerialPort
 from tests.live.target import LEASE
 from tests.live.witness import CYCLE, Span
 
+from .acts import let_pass
 from .way import Way
 
 
@@ -28,7 +29,7 @@ def killed(processes: Callable[[Way], list[int]], number: signal.Signals) -> Cal
         assert found
         for process in found:
             os.kill(process, number)
-        return time.monotonic()
+        return time.monotonic()  # the failure's time, compared with the target's
 
     return act
 
@@ -47,7 +48,7 @@ def of_line(way: Way) -> list[int]:
 
 def flooded_and_killed(way: Way) -> float:
     way.line.become(signal.SIGUSR2)
-    time.sleep(0.1)
+    let_pass(way.page.evaluate, 0.1)
     return killed(of_page, signal.SIGKILL)(way)
 
 
@@ -88,7 +89,7 @@ def end_of(way: Way, at: float) -> Span:
 @pytest.mark.parametrize("begin", [enable, move])
 def test_the_actuator_is_safe_within_300_ms_and_a_cycle(way: Way, begin: Callable[[Way], None], failure: str) -> None:
     begin(way)
-    way.page.wait_for_timeout(1000)
+    let_pass(way.page.evaluate, 1.0)
     assert way.robot.is_driven(), "it is driven for longer than a lease or a pulse"
     at = FAILURES[failure](way)
     span = end_of(way, at)
@@ -101,7 +102,7 @@ def test_what_a_page_has_sent_before_it_was_killed_drives_no_longer(way: Way, be
     """On a slow line, its newest answers are still on their way."""
     way.line.become(signal.SIGHUP)
     begin(way)
-    way.page.wait_for_timeout(1000)
+    let_pass(way.page.evaluate, 1.0)
     assert way.robot.is_driven(), "a slow line alone does not stop it"
     at = killed(of_page, signal.SIGKILL)(way)
     span = end_of(way, at)
@@ -116,5 +117,5 @@ def test_a_robot_that_another_program_has_enabled_stays_enabled(way: Way) -> Non
     way.robot.wait(driven=True)
     way.connect()
     way.page.close()
-    time.sleep(2 * LEASE)
+    time.sleep(2 * LEASE)  # no page is left that shows the target's time
     assert [span.begin for span in way.robot.spans() if way.robot.is_driven()] == [way.robot.spans()[0].begin]

@@ -14,7 +14,8 @@ import pytest
 from tests.live.target import LATE, LEASE, Target
 from tests.waiting import until
 
-from .acts import drive
+from .acts import drive, let_pass
+from .acts import until as until_page
 from .axe import violations
 from .served import ROOT, Served
 
@@ -43,7 +44,7 @@ def enable(page: Any) -> None:
     """Holds the button while another element has the focus; a click alone must have no effect."""
     button = page.get_by_role("button", name="Enable (hold)")
     button.click()
-    page.wait_for_timeout(HOLD)
+    let_pass(page.evaluate, HOLD / 1000)
     page.get_by_role("textbox", name="pan_subscriber").focus()
     assert page.get_by_role("tab", name="Live ○ disabled").is_visible(), "a click is too short"
     enabled = page.get_by_role("tab", name="Live ● enabled")
@@ -55,7 +56,7 @@ def stopped(page: Any) -> str:
     place = page.locator(".live-signals .value").first
     for _ in range(10):
         position = str(place.inner_text())
-        page.wait_for_timeout(500)
+        let_pass(page.evaluate, 0.5)
         if place.inner_text() == position:
             return position
     raise AssertionError("the axis moves")
@@ -92,9 +93,7 @@ def test_a_robot_is_tuned_and_stopped_by_the_space_bar(jiwy: Any, page: Any) -> 
 
     assert violations(page) == []
     page.set_viewport_size({"width": 400, "height": 700})
-    page.wait_for_timeout(300)
-    wide = page.evaluate("document.documentElement.scrollWidth")
-    assert wide <= 400, f"the page is {wide} px wide"
+    until_page(page, "document.documentElement.scrollWidth <= 400")
 
 
 def saved(page: Any, part: str, button: str) -> bytes:
@@ -174,7 +173,7 @@ def test_the_first_three_minutes(jiwy: Any, open_page: Open, jiwy_host: Path) ->
         follows()
         fill("Pan\\PID\\kp", "0.3")
         fill("pan_subscriber", "0.5")
-        page.wait_for_timeout(1000)
+        let_pass(page.evaluate, 1.0)
         assert error() > 0.015, "it creeps"
         fill("Pan\\PID\\kp", "2.2")
         follows()
@@ -195,12 +194,11 @@ def test_stop_is_not_behind_the_streams_of_many_tabs(jiwy: Any, page: Any, targe
         " for (let n = 0; n < 4; n++) jsonLines(`api/live/events?page=${n}`).next(); })()"
     )
     enable(page)
-    page.wait_for_timeout(1000)
+    let_pass(page.evaluate, 1.0)
     assert jiwy.epg.state()["live"]["target"]["state"]["enabled"] == "1", "its numbers are answered"
     page.get_by_role("button", name="Stop robot").click()
-    page.wait_for_timeout(500)
-    state = jiwy.epg.state()["live"]["target"]["state"]
-    assert (state["enabled"], state["fault"]) == ("0", "none"), "it was stopped, and not by the end of its lease"
+    state = jiwy.epg.until(lambda state: state["live"]["target"]["state"]["enabled"] == "0")["live"]["target"]["state"]
+    assert state["fault"] == "none", "it was stopped, and not by the end of its lease"
 
 
 def test_stop_is_in_reach_in_every_tab(jiwy: Any, page: Any) -> None:
@@ -230,13 +228,13 @@ def test_a_release_is_heard_after_the_page_was_drawn_again(jiwy: Any, page: Any)
     def press_and_release(button: Any) -> None:
         button.hover()
         page.mouse.down()
-        page.wait_for_timeout(150)
+        let_pass(page.evaluate, 0.15)
         jiwy.epg.post("reload")
-        page.wait_for_timeout(150)
+        let_pass(page.evaluate, 0.15)
         page.mouse.up()
 
     press_and_release(page.get_by_role("button", name="Enable (hold)"))
-    page.wait_for_timeout(HOLD)
+    let_pass(page.evaluate, HOLD / 1000)
     assert page.get_by_role("tab", name="Live ○ disabled").is_visible(), "the press was too short"
     press_and_release(page.get_by_role("button", name="Move pwm_pan forwards"))
     assert stopped(page)
@@ -245,10 +243,10 @@ def test_a_release_is_heard_after_the_page_was_drawn_again(jiwy: Any, page: Any)
 def test_a_page_that_is_hidden_stops_the_robot(jiwy: Any, page: Any, target: Target) -> None:
     """test_failures.py kills pages."""
     enable(page)
-    page.wait_for_timeout(1000)
+    let_pass(page.evaluate, 1.0)
     assert jiwy.epg.state()["live"]["target"]["state"]["enabled"] == "1"
     page.evaluate("Object.defineProperty(document, 'hidden', {value: true})")
-    at = time.monotonic()
+    at = time.monotonic()  # the page's end, compared with the target's time
     until(lambda: jiwy.epg.state()["live"]["target"]["state"]["enabled"] == "0")
     assert jiwy.epg.state()["live"]["target"]["state"]["fault"] == "operator"
     jiwy.epg.post("live/disconnect")
@@ -258,17 +256,15 @@ def test_a_page_that_is_hidden_stops_the_robot(jiwy: Any, page: Any, target: Tar
 def test_a_program_that_the_page_runs_is_compared_with_its_simulation(jiwy: Any, open_page: Open) -> None:
     page = open_page(jiwy.address)
 
-    def agree() -> None:
-        """Agrees to run commands, if the page asks."""
-        page.wait_for_timeout(1500)
-        asked = page.get_by_role("dialog", name="Run these commands?")
-        if asked.is_visible():
-            asked.get_by_role("button", name="Run").click()
+    def press(name: str, action: str, job: str) -> None:
+        """Presses a button, and agrees to run commands if the page asks."""
+        with page.expect_response(re.compile(f"/api/{action}$"), timeout=PATIENT) as answer:
+            page.get_by_role("button", name=name).click(timeout=PATIENT)
+        if answer.value.json()[job]["ask"]:
+            page.get_by_role("dialog", name="Run these commands?").get_by_role("button", name="Run").click()
 
-    page.get_by_role("button", name="Generate").click()
-    agree()
-    page.get_by_role("button", name="Run jiwy_host in real time").click(timeout=PATIENT)
-    agree()
+    press("Generate", "generate", "build")
+    press("Run jiwy_host in real time", "run", "program")
     page.get_by_text("jiwy_host runs in real time").wait_for()
     page.get_by_role("tab", name="Live").click()
     page.get_by_role("button", name="Connect", exact=True).click()
@@ -276,13 +272,12 @@ def test_a_program_that_the_page_runs_is_compared_with_its_simulation(jiwy: Any,
     page.get_by_role("button", name="Stop robot").click()
     page.get_by_role("tab", name="Live ○ disabled").wait_for()
     enable(page)
-    page.wait_for_timeout(3000)  # it is homing
+    let_pass(page.evaluate, 3.0)  # it is homing
     page.get_by_role("textbox", name="pan_subscriber").fill("0.5")
     page.get_by_role("textbox", name="pan_subscriber").press("Enter")
-    page.wait_for_timeout(1500)
+    let_pass(page.evaluate, 1.5)
     page.get_by_role("button", name="Stop robot").click()
-    page.get_by_role("button", name="Compare").click()
-    agree()
+    press("Compare", "compare", "comparison")
     page.get_by_role("img", name="Target and simulation: inputs.position_pan").wait_for(timeout=PATIENT)
     difference = page.get_by_text("inputs.position_pan simulated, RMS difference").inner_text()
     assert float(difference.split()[-2]) < 0.1

@@ -16,6 +16,7 @@ import pytest
 from tests.live.target import LATE, LEASE
 from tests.live.witness import PROJECT, Robot
 
+from .acts import NEWEST, let_pass
 from .firefox import Firefox
 from .served import Served
 from .way import Way
@@ -23,7 +24,6 @@ from .way import Way
 HOLD = 0.7
 """Seconds."""
 READY = "button.hold:enabled:not([aria-disabled])"
-NEWEST = "(async () => (await import(new URL('live_events.js', location))).live.times.at(-1) ?? null)()"
 
 
 @pytest.fixture
@@ -32,9 +32,9 @@ def robot(robot_program: Path, tmp_path: Path) -> Iterator[Robot]:
         yield found
 
 
-def stays_enabled(robot: Robot) -> None:
+def stays_enabled(robot: Robot, page: Any) -> None:
     robot.wait(driven=True)
-    time.sleep(3 * LEASE)
+    let_pass(page.evaluate, 3 * LEASE)
     assert robot.is_driven(), "its page keeps it enabled"
 
 
@@ -64,7 +64,7 @@ def test_tabs_and_windows_of_chromium(way: Way) -> None:
         show_live(page, way.epg.address)
         first = page.evaluate(NEWEST)
         page.get_by_role("button", name="Enable (hold)").click(delay=1000 * HOLD)
-        stays_enabled(way.robot)
+        stays_enabled(way.robot, page)
         assert page.evaluate(NEWEST) > first, "values arrive"
         assert way.page.evaluate(NEWEST) > first, "and in the other one"
         stop(way.robot, way.epg)
@@ -79,14 +79,14 @@ def test_tabs_of_firefox(robot: Robot, firefox: Firefox) -> None:
             show_live_in(firefox, epg.address)
             first = firefox.evaluate(NEWEST)
             firefox.hold("button.hold", HOLD)
-            stays_enabled(robot)
+            stays_enabled(robot, firefox)
             assert firefox.evaluate(NEWEST) > first, "values arrive in the second tab"
             stop(robot, epg)
             firefox.show_tab(0)
             firefox.until(f"document.querySelector('{READY}')", 20)
             assert firefox.evaluate(NEWEST) > first, "and in the first one"
             firefox.hold("button.hold", HOLD)
-            stays_enabled(robot)
+            stays_enabled(robot, firefox)
         finally:
             firefox.close_tab()
         stop(robot, epg)
@@ -97,13 +97,13 @@ def test_two_browsers(way: Way, firefox: Firefox) -> None:
     way.page.locator(READY).wait_for()
     show_live_in(firefox, way.epg.address)
     way.enable()
-    stays_enabled(way.robot)
+    stays_enabled(way.robot, way.page)
     firefox.press("Escape")
     way.robot.wait(driven=False)
     firefox.until("document.getElementById('robot').textContent.includes('disabled')")
     firefox.until(f"document.querySelector('{READY}')", 20)
     firefox.hold("button.hold", HOLD)
-    stays_enabled(way.robot)
+    stays_enabled(way.robot, firefox)
     way.page.get_by_role("tab", name="Live ● enabled").wait_for()
     way.page.keyboard.press("Space")
     way.robot.wait(driven=False)
@@ -119,7 +119,7 @@ def test_a_page_without_values_moves_nothing(way: Way) -> None:
     )
     last = way.page.context.new_page()
     last.goto(way.epg.address)
-    last.wait_for_timeout(3000)
+    let_pass(way.page.evaluate, 3.0)
     assert last.locator(READY).count() == 0
     answer = last.evaluate(
         "(async () => { const { ask } = await import(new URL('server.js', location));"
@@ -133,6 +133,7 @@ def test_a_page_without_values_moves_nothing(way: Way) -> None:
 @pytest.mark.parametrize("browser", ["chromium", "firefox"])
 def test_the_lease_does_not_wait_for_drawing(browser: str, way: Way, request: Any) -> None:
     """The thread of the page stands still for less than a worker waits for it, and then for longer."""
+    # the page's thread stands still
     block = "(() => { const end = performance.now() + %d; while (performance.now() < end); })()"
     if browser == "firefox":
         firefox = request.getfixturevalue("firefox")
@@ -146,10 +147,10 @@ def test_the_lease_does_not_wait_for_drawing(browser: str, way: Way, request: An
         way.enable()
         evaluate = way.page.evaluate
     for _ in range(3):
-        time.sleep(0.3)
+        let_pass(evaluate, 0.3)
         evaluate(block % 500)
         assert len(way.robot.spans()) == 1 and way.robot.is_driven(), "the worker has answered"
-    begin = time.monotonic()
+    begin = time.monotonic()  # compared with the target's time
     evaluate(block % 2000)
     way.robot.wait(driven=False)
     assert way.robot.spans()[-1].last <= begin + 2.0 + LEASE + LATE

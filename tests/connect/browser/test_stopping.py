@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import time
 from collections.abc import Callable
@@ -11,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from .acts import until
+from .acts import let_pass, until
 from .axe import violations
 from .way import Way
 
@@ -91,7 +92,7 @@ def test_a_key_stops_from_everything(way: Way, key: str) -> None:
         if place is in_a_dialog:
             assert way.page.get_by_role("dialog").is_visible(), "the key does nothing else"
             way.bar.get_by_text("disabled").wait_for()
-            way.page.wait_for_timeout(500)
+            let_pass(way.page.evaluate, 0.5)
             way.page.keyboard.press("Escape")
             way.page.get_by_role("dialog").wait_for(state="detached")
         way.page.mouse.up()
@@ -148,14 +149,15 @@ def test_a_stop_that_is_not_confirmed_says_so_and_goes_on(way: Way, part: Callab
     way.connect()
     way.enable() if leased else way.enable_unattended()
     os.kill(part(way), signal.SIGSTOP)
-    late, begin = way.late(), time.monotonic()
+    late, begin = way.late(), time.monotonic()  # the time that a user waits
     way.page.keyboard.press("Space")
     way.page.get_by_role("alert").get_by_text(NOT_CONFIRMED).wait_for()
+    # the time that a user waits
     assert 0.4 < time.monotonic() - begin < 3 + way.late() - late, "it has waited for the confirmation"
     way.page.get_by_text("values are old: no news for").first.wait_for()
     assert way.page.get_by_role("tab", name="Live ? old").is_visible()
     assert way.page.get_by_text("The values are old: no news for").is_visible()
-    way.page.wait_for_timeout(1500)
+    way.page.get_by_text(re.compile(r"The values are old: no news for ([4-9]|\d\d+) s")).wait_for()
     assert way.page.get_by_text(NOT_CONFIRMED).is_visible()
     os.kill(part(way), signal.SIGCONT)
     way.stops_within(5)
@@ -184,7 +186,7 @@ def test_a_suspended_laptop_shows_no_old_value_as_new(way: Way) -> None:
     for process in stopped:
         os.kill(process, signal.SIGSTOP)
     way.robot.close()
-    time.sleep(2)
+    time.sleep(2)  # the time for which a laptop sleeps
     for process in stopped:
         os.kill(process, signal.SIGCONT)
     way.page.get_by_text("is not connected any more. It was enabled unattended").wait_for()
@@ -194,6 +196,7 @@ def test_values_become_old_by_the_clock_that_goes_on(way: Way) -> None:
     """The other clock of a browser stands still while the computer is suspended."""
     way.connect()
     way.enable()
+    # a clock that stands still
     way.page.evaluate("(() => { const at = performance.now(); performance.now = () => at; })()")
     os.kill(way.epg.process, signal.SIGSTOP)
     until(way.page, "document.body.classList.contains('old')", 10)

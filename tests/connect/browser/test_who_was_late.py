@@ -10,6 +10,7 @@ from collections.abc import Callable
 
 import pytest
 
+from .acts import let_pass
 from .way import Way
 
 PARTS: dict[str, Callable[[Way], list[int]]] = {
@@ -31,13 +32,13 @@ def test_who_was_late(way: Way, late: str) -> None:
     way.connect()
     for _ in range(5):  # on a computer with high load, the page can be late before
         way.enable()
-        way.page.wait_for_timeout(1000)
+        let_pass(way.page.evaluate, 1.0)
         if way.robot.is_driven():
             break
     processes = PARTS[late](way)
     for process in processes:
         os.kill(process, signal.SIGSTOP)
-    time.sleep(1.2)
+    time.sleep(1.2)  # the fault: a part stands still
     for process in processes:
         os.kill(process, signal.SIGCONT)
     state = way.epg.until(lambda state: "was late" in (state["live"]["target"]["fault"] or {}).get("text", ""))

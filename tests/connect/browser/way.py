@@ -111,9 +111,9 @@ class Way:
 
     def stops_within(self, seconds: float, what: str = "") -> None:
         """Waits until the robot is not driven, for some seconds and the time in which the computer was late."""
-        late, begin = self.late(), time.monotonic()
+        late, begin = self.late(), time.monotonic()  # the time that a user waits
         until(lambda: not self.robot.is_driven(), what)
-        assert time.monotonic() - begin < seconds + self.late() - late, what
+        assert time.monotonic() - begin < seconds + self.late() - late, what  # the time that a user waits
 
     def close(self) -> None:
         for process in (*self.renderers(), self.epg.process, self.robot.process.pid):

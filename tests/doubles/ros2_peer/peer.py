@@ -43,6 +43,7 @@ from cyclonedds.util import duration
 
 from tests.doubles.ros2_peer.definitions import ros_type, type_hash
 from tests.doubles.ros2_peer.messages import Gid_, NodeEntitiesInfo_, ParticipantEntitiesInfo_, service_struct
+from tests.waiting import soon
 
 FOREVER = duration(infinite=True)
 ANYTHING = SampleState.Any | ViewState.Any | InstanceState.Any
@@ -112,7 +113,7 @@ class Subscription:
         return names.get(status.last_policy_id, "other") if status.total_count else None
 
     def take(self) -> None:
-        now = time.monotonic()
+        now = time.monotonic()  # times of messages, compared with the robots' traces
         for message in self.reader.take(100):
             if message.sample_info.valid_data:
                 self.received.append((now, message))
@@ -126,7 +127,7 @@ class Publisher:
         self.sent: list[tuple[float, Any]] = []
 
     def publish(self, message: Any) -> None:
-        self.sent.append((time.monotonic(), message))
+        self.sent.append((time.monotonic(), message))  # times of messages, compared with the robots' traces
         self.writer.write(message)
 
     @property
@@ -344,17 +345,14 @@ class Peer:
 
     def spin_until(self, done: Callable[[], bool], timeout: float = 20.0) -> bool:
         """Handles messages until ``done()`` is true; False if that has not happened in time."""
-        end = time.monotonic() + timeout
-        while True:
+
+        def turn() -> bool:
             for subscription in self._subscriptions:
                 subscription.take()
             self._take_graph()
-            if done():
-                return True
-            left = end - time.monotonic()
-            if left <= 0:
-                return False
-            self._waitset.wait(duration(seconds=min(left, 0.05)))
+            return done() or bool(self._waitset.wait(duration(seconds=min(timeout, 0.05))) and False)
+
+        return soon(turn, timeout, pause=0.0)  # spin() has no event to wait for
 
     def _take_graph(self) -> None:
         graph = self.graph

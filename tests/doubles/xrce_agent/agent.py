@@ -75,7 +75,7 @@ class Agent:
         topics: Topics | None = None,
         seed: int = 1,
         heartbeat: float = 0.2,
-        clock: Callable[[], float] = time.monotonic,
+        clock: Callable[[], float] = time.monotonic,  # the agent's timebase; a simulation gives its own
     ) -> None:
         """``clock`` returns seconds: those of a simulation if nothing may wait for real time."""
         self.link = link
@@ -136,12 +136,13 @@ class Agent:
 
     def restart(self, pause: float = 0.0) -> None:
         self.kill()
-        time.sleep(pause)
+        time.sleep(pause)  # the agent is absent
         self.start()
 
     def freeze(self) -> None:
         """Stops like a suspended process: bytes that arrive wait in the system's buffer."""
-        self._frozen = True
+        with self.lock:
+            self._frozen = True
 
     def thaw(self) -> None:
         self._frozen = False
@@ -192,26 +193,25 @@ class Agent:
     def _run(self) -> None:
         next_beat = 0.0
         while not self._ending:
+            now = time.monotonic()  # the agent's heartbeat
             with self.lock:
                 file = self.link.fileno() if self._alive and not self._frozen else -1
                 due = self._later[0][0] if self._later else next_beat
             files = [self._wake_read] + ([file] if file >= 0 else [])
-            wait = max(0.0, min(due, next_beat, time.monotonic() + 0.05) - time.monotonic())
+            wait = max(0.0, min(due, next_beat, now + 0.05) - now)
             try:
                 ready = select.select(files, [], [], wait)[0]
             except (OSError, ValueError):  # the link was closed meanwhile
                 continue
             if self._wake_read in ready:
                 os.read(self._wake_read, 4096)
-            if self._frozen:
-                continue
             with self.lock:
-                if self._alive:
+                if self._alive and not self._frozen:
                     if file in ready and file == self.link.fileno():
                         self._receive()
                     self._run_later()
-                    if time.monotonic() >= next_beat:
-                        next_beat = time.monotonic() + self._heartbeat
+                    if now >= next_beat:
+                        next_beat = now + self._heartbeat
                         self.link.open()  # the device has come back
                         self._beat()
 
@@ -397,7 +397,7 @@ class Agent:
             self._reply(client, submessage(Id.TIMESTAMP_REPLY, self._now() * 2 + reader.take(8)))
 
     def _now(self) -> bytes:
-        now = time.time_ns() + int(self.clock_offset * 1e9)
+        now = time.time_ns() + int(self.clock_offset * 1e9)  # the agent's clock, which boards ask for
         return struct.pack("<iI", now // 10**9, now % 10**9)
 
     def _create(self, client: Client, stream: int, flags: int, reader: CdrReader) -> None:

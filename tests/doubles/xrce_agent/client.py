@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import time
 from collections import deque
 from collections.abc import Callable, Hashable
 
@@ -20,15 +19,14 @@ UNLIMITED = 0xFFFF
 class Reading:
     """An active READ_DATA.  Samples wait here; if there are too many, the oldest are dropped, as in a DDS history."""
 
-    def __init__(self, request: bytes, stream: int, samples: int, seconds: float, depth: int) -> None:
+    def __init__(self, request: bytes, stream: int, samples: int, depth: int) -> None:
         self.request, self.stream = request, stream
         self._left = samples
-        self._end = time.monotonic() + seconds if seconds else None
         self.waiting: deque[bytes] = deque(maxlen=depth)
 
     @property
     def over(self) -> bool:
-        return self._left == 0 or (self._end is not None and time.monotonic() > self._end)
+        return self._left == 0
 
     def take(self) -> None:
         """Removes the first waiting sample, which was sent."""
@@ -196,14 +194,15 @@ class Client:
         stream, _format = reader.u8(), reader.u8()
         if reader.flag():
             reader.string()  # content filter
-        samples, seconds = 1, 0
+        samples = 1
         if reader.flag():
-            samples, seconds = reader.u16(), reader.u16()
+            samples = reader.u16()
+            reader.u16()  # the longest time, which no board of EPG limits
         end = self.ends.get(identity)
         if not isinstance(end, ReaderEnd):
             return Status.UNKNOWN_REFERENCE
         stream = stream or BEST_EFFORT_STREAM
-        self.readings[identity] = Reading(request, stream, samples, seconds, end.depth)
+        self.readings[identity] = Reading(request, stream, samples, end.depth)
         return Status.OK
 
     def next_data(self) -> list[bytes]:

@@ -8,16 +8,16 @@ import errno
 import os
 import random
 import socket
-import time
 import tty
 from collections.abc import Hashable
 from pathlib import Path
 from typing import Protocol
 
+from tests.waiting import until
+
 from .framing import AGENT, Deframer, frame
 
 READ = 65536
-PATIENCE = 2.0
 """Seconds to wait until a port is free."""
 
 
@@ -69,15 +69,13 @@ class UdpLink:
         return f"{self.host}:{self.port}"
 
     def open(self) -> None:
-        end = time.monotonic() + PATIENCE
-        while self._socket is None:
-            try:
-                self._bind()
-            except OSError:
-                # A thread that waited for the old socket still holds it for a moment.
-                if time.monotonic() > end:
-                    raise
-                time.sleep(0.001)
+        # A thread that waited for the old socket still holds it for a moment.
+        until(lambda: self._socket is not None or self._bound(), "the port stays in use", pause=0.001)
+
+    def _bound(self) -> bool:
+        with contextlib.suppress(OSError):
+            self._bind()
+        return self._socket is not None
 
     def _bind(self) -> None:
         new = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A log of every frame that passes an agent, with the time on two clocks and the faults that changed it."""
+"""A log of every frame that passes an agent, and the faults that changed it."""
 
 from __future__ import annotations
 
-import time
 from collections import deque
 from collections.abc import Hashable, Iterator
 from dataclasses import dataclass
@@ -13,8 +12,8 @@ from .wire import Id, WireError, split, submessages
 
 @dataclass(frozen=True)
 class Frame:
-    monotonic: float
-    wall: float
+    number: int
+    """The number of frames before it."""
     from_board: bool
     peer: Hashable
     data: bytes
@@ -31,7 +30,7 @@ class Frame:
     def __str__(self) -> str:
         names = " ".join(part.name for part in self.submessages()) or self.data.hex()
         arrow = "->" if self.from_board else "<-"
-        return f"{self.monotonic:.6f} {arrow} {len(self.data)} {names} {self.fate}".rstrip()
+        return f"{self.number} {arrow} {len(self.data)} {names} {self.fate}".rstrip()
 
 
 class Log:
@@ -42,8 +41,8 @@ class Log:
         self.count = 0
 
     def add(self, from_board: bool, peer: Hashable, data: bytes, fate: str = "") -> None:
+        self._frames.append(Frame(self.count, from_board, peer, data, fate))
         self.count += 1
-        self._frames.append(Frame(time.monotonic(), time.time(), from_board, peer, data, fate))
 
     def __iter__(self) -> Iterator[Frame]:
         return iter(list(self._frames))
@@ -51,7 +50,6 @@ class Log:
     def clear(self) -> None:
         self._frames.clear()
 
-    def of(self, identity: Id, from_board: bool, since: float = 0.0) -> list[Frame]:
+    def of(self, identity: Id, from_board: bool) -> list[Frame]:
         """The frames with such a submessage."""
-        found = (frame for frame in self if frame.from_board == from_board and frame.monotonic >= since)
-        return [frame for frame in found if identity in frame.submessages()]
+        return [frame for frame in self if frame.from_board == from_board and identity in frame.submessages()]

@@ -12,10 +12,10 @@ It is limited to the loopback interface and to one DDS domain, so that tests do 
 from __future__ import annotations
 
 import os
+import secrets
 import shutil
 import signal
 import subprocess
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -62,7 +62,7 @@ def free_port() -> int:
 
 def free_domain() -> int:
     """A domain that other test processes probably do not use; ROS 2 allows 0 to 101 on Linux."""
-    return 30 + (os.getpid() + time.time_ns() // 10**9) % 70
+    return 30 + secrets.randbelow(70)
 
 
 @contextmanager

@@ -7,11 +7,13 @@ reliable reader.  A :class:`Topics` outlives the agents that use it, as a DDS do
 
 from __future__ import annotations
 
+import itertools
 import threading
-import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
+
+from tests.waiting import soon
 
 IDENTITY = 24
 """Bytes of the identity of a sample: GUID and sequence number of its writer.  XRCE has it before a request or reply."""
@@ -21,8 +23,8 @@ DEPTH = 10
 
 @dataclass(frozen=True)
 class Sample:
-    time: float
-    """``time.monotonic()`` at its arrival."""
+    number: int
+    """The number of samples before it."""
     topic: str
     data: bytes
     """CDR without its encapsulation header."""
@@ -59,12 +61,12 @@ class Subscription:
 
     def __init__(self, topics: Topics, topic: str, type_name: str | None, reliable: bool) -> None:
         self._topics = topics
-        self.samples: list[tuple[float, bytes]] = []
+        self.samples: list[bytes] = []
         self.end = ReaderEnd(topic, type_name, reliable, deliver=self._deliver)
         topics.attach_reader(self.end)
 
     def _deliver(self, data: bytes) -> None:
-        self.samples.append((time.monotonic(), data))
+        self.samples.append(data)
 
     def close(self) -> None:
         self._topics.detach(self.end)
@@ -77,6 +79,8 @@ class Topics:
         self._samples: deque[Sample] = deque(maxlen=kept)
         self.readers: list[ReaderEnd] = []
         self.writers: list[Endpoint] = []
+        self.count = 0
+        """The number of samples so far, which is the number of the next one."""
         self._requests = 0
         self.listeners: list[Callable[[str, Endpoint], None]] = []
         """Called with "attach" or "detach" and the endpoint of a board; a bridge needs this."""
@@ -111,7 +115,7 @@ class Topics:
     def write(self, writer: Endpoint, data: bytes) -> None:
         """Passes a board's sample to all readers that match."""
         with self.lock:
-            self._samples.append(Sample(time.monotonic(), writer.topic, data, writer.node))
+            self._keep(writer, data)
             self._give(writer, data)
             for tap in self.taps:
                 tap(writer, data)
@@ -120,8 +124,12 @@ class Topics:
     def reply(self, writer: Endpoint, request: bytes, data: bytes) -> None:
         """Takes a board's reply to the request with the identity ``request``."""
         with self.lock:
-            self._samples.append(Sample(time.monotonic(), writer.topic, data, writer.node, request))
+            self._keep(writer, data, request)
             self._news.notify_all()
+
+    def _keep(self, writer: Endpoint, data: bytes, request: bytes = b"") -> None:
+        self._samples.append(Sample(self.count, writer.topic, data, writer.node, request))
+        self.count += 1
 
     def _give(self, writer: Endpoint, data: bytes) -> int:
         matched = [reader for reader in self.readers if writer.matches(reader)]
@@ -161,14 +169,16 @@ class Topics:
     def subscribe(self, topic: str, reliable: bool = True, type_name: str | None = None) -> Subscription:
         return Subscription(self, topic, type_name, reliable)
 
-    def samples(self, topic: str, since: float = 0.0, node: str | None = None) -> list[Sample]:
-        """The samples that boards have written, also without a reader."""
+    def samples(self, topic: str, since: int = 0, node: str | None = None) -> list[Sample]:
+        """The samples from the number ``since`` on that boards have written, also without a reader."""
         with self.lock:
-            return [
-                sample
-                for sample in self._samples
-                if sample.topic == topic and sample.time >= since and node in (None, sample.writer)
-            ]
+            newest = itertools.takewhile(lambda sample: sample.number >= since, reversed(self._samples))
+            return [each for each in newest if each.topic == topic and node in (None, each.writer)][::-1]
+
+    def newest(self, topic: str, node: str | None = None) -> bytes:
+        """The data of the newest sample."""
+        with self.lock:
+            return next(s.data for s in reversed(self._samples) if s.topic == topic and node in (None, s.writer))
 
     def clear(self) -> None:
         with self.lock:
@@ -176,18 +186,16 @@ class Topics:
 
     def wait_until(self, condition: Callable[[], bool], seconds: float) -> bool:
         """True if ``condition`` became true within that time; it is checked at every event."""
-        end = time.monotonic() + seconds
-        with self.lock:
-            while not condition():
-                left = end - time.monotonic()
-                if left <= 0:
-                    return False
-                self._news.wait(min(left, 0.02))
-            return True
+
+        def holds() -> bool:
+            with self.lock:
+                return condition() or (self._news.wait(0.02) and False)
+
+        return soon(holds, seconds, pause=0.0)  # tests also wait for what does not happen
 
     def wait_for_sample(self, topic: str, seconds: float = 20.0, node: str | None = None) -> Sample:
         """The next sample that a board writes from now on."""
-        since = time.monotonic()
+        since = self.count
         found = self.wait_until(lambda: bool(self.samples(topic, since, node)), seconds)
         assert found, f"nothing on {topic} within {seconds} s"
         return self.samples(topic, since, node)[0]

@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 import re
 import subprocess
-import time
+import tempfile
 from pathlib import Path
 
 from tests.doubles.xrce_agent import Agent, Diagnostics, UdpLink, float64, read_diagnostics, read_float64
@@ -28,7 +28,8 @@ class Board:
         command = [str(program), "--realtime", "--quiet", "--serial", serial, way, agent.address, *options]
         self.agent, self.topics = agent, agent.topics
         self.node = f"/lab/robot_{serial}"
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self._output = tempfile.TemporaryFile()  # noqa: SIM115 (closed by __exit__)
+        self.process = subprocess.Popen(command, stdout=self._output, stderr=self._output)
 
     def __enter__(self) -> Board:
         return self
@@ -36,7 +37,8 @@ class Board:
     def __exit__(self, *_: object) -> None:
         if self.process.poll() is None:
             self.process.kill()
-        self.process.communicate()
+        self.process.wait()
+        self._output.close()
 
     def stop(self) -> str:
         """Ends the program normally; returns its output, which is empty unless a sanitizer reports an error.
@@ -44,9 +46,16 @@ class Board:
         The lines that tell of a lost agent are left out.
         """
         self.process.terminate()
-        output, errors = self.process.communicate(timeout=PATIENCE)
-        assert self.process.returncode == 130, errors
-        return output + without_connection(errors)
+        assert self.process.wait(PATIENCE) == 130, self.said()
+        return without_connection(self.said())
+
+    def said(self) -> str:
+        """All that the program has printed."""
+        return os.pread(self._output.fileno(), 1 << 20, 0).decode()
+
+    def lose(self) -> None:
+        """Waits until the program has told that it has lost the agent."""
+        self.agent.wait_until(lambda: self.said().rfind("lost the agent") > self.said().rfind("connected to the agent"))
 
     def kill(self) -> None:
         self.process.kill()
@@ -54,26 +63,36 @@ class Board:
 
     # Topics ----------------------------------------------------------------------------------------------------------
 
-    def values(self, topic: str, since: float = 0.0) -> list[float]:
-        return [value for _, value in self.timed(topic, since)]
+    def values(self, topic: str, since: int = 0) -> list[float]:
+        return [read_float64(sample.data) for sample in self.topics.samples(f"rt/lab/{topic}", since, self.node)]
 
-    def timed(self, topic: str, since: float = 0.0) -> list[tuple[float, float]]:
-        """The samples as pairs of time at the agent and value."""
-        samples = self.topics.samples(f"rt/lab/{topic}", since, self.node)
-        return [(sample.time, read_float64(sample.data)) for sample in samples]
+    def cycles(self) -> float:
+        """The newest number of the model's cycles of 1 ms, which is the board's time."""
+        return read_float64(self.topics.newest("rt/lab/cycles_too", self.node))
 
-    def began(self, since: float = 0.0) -> float:
-        """The time at the agent of the model's cycle 0.  Of the samples since then, the soonest one counts."""
-        return min(when - cycles / 1000 for when, cycles in self.timed("cycles_too", since))
+    def passes(self, cycles: float) -> None:
+        """Waits until the board has done so many cycles more."""
+        end = self.cycles() + cycles
+        self.agent.wait_until(lambda: self.cycles() >= end)
+
+    def publishes(self, count: int) -> None:
+        """Waits for so many publications, one every 20 ms of the board's time.  A disabled board publishes, too."""
+        for _ in range(count):
+            self.next("cycles_too")
+
+    def began(self) -> float:
+        """The time in seconds of the first tick, by the stamp of the next diagnostics."""
+        told = self.diagnostics()
+        return told.stamp - (int(told.values["cycles"]) + int(told.values["missed"])) / 1000
 
     def next(self, topic: str, seconds: float = PATIENCE) -> float:
         return read_float64(self.topics.wait_for_sample(f"rt/lab/{topic}", seconds, self.node).data)
 
     def wait_for(self, topic: str, value: float, seconds: float = PATIENCE) -> float:
-        """Waits until ``topic`` has this value from now on; returns how long that took."""
-        began = time.monotonic()
-        self.agent.wait_until(lambda: value in self.values(topic, began), seconds)
-        return time.monotonic() - began
+        """Waits until ``topic`` has this value from now on; returns how many cycles that took."""
+        since, began = self.topics.count, self.cycles()
+        self.agent.wait_until(lambda: value in self.values(topic, since), seconds)
+        return self.cycles() - began
 
     def set(self, topic: str, value: float, reliable: bool = True) -> int:
         """Publishes a setpoint to all boards; returns the number of readers that match."""
@@ -85,15 +104,13 @@ class Board:
         A ``false`` of the first second after a connection only stops, because it can be an old one of the agent.
         """
         if on:
-            time.sleep(1.1)
+            self.publishes(55)
             self.topics.publish(f"rt{self.node}/enable", bytes([False]))
         self.topics.publish(f"rt{self.node}/enable", bytes([on]))
 
     def running(self, seconds: float = PATIENCE) -> float:
-        """Waits until the board publishes from now on; returns how long that took."""
-        began = time.monotonic()
-        self.topics.wait_for_sample("rt/lab/cycles_too", seconds, self.node)
-        return time.monotonic() - began
+        """Waits until the board publishes from now on; returns the number of its cycles."""
+        return self.next("cycles_too", seconds)
 
     def diagnostics(self, seconds: float = PATIENCE) -> Diagnostics:
         """The next diagnostics."""

@@ -24,13 +24,12 @@ def measure(program: Path, count: int, folder: Path, seed: int = 1) -> list[Step
         try:
             agent.topics.wait_for_reader(TOPIC)
             agent.wait_until(lambda: any(client.readings for client in agent.clients.values()))
-            time.sleep(0.2)
             sent = []
             for number in range(count):
-                time.sleep(draw.uniform(0.003, 0.007))
-                sent.append(time.monotonic())
+                time.sleep(draw.uniform(0.003, 0.007))  # any phase of the control cycle
+                sent.append(time.monotonic())  # the latency to the program's own clock
                 agent.topics.publish(TOPIC, float64(duty(number)), reliable=False)
-            time.sleep(0.2)
+            time.sleep(0.2)  # the last one arrives, and the program publishes nothing
         finally:
             process.terminate()
             status = process.wait(timeout=10)

@@ -13,6 +13,7 @@ import pytest
 
 from tests.doubles.xrce_agent import Agent, Kind, Link, PtyLink, Status, UdpLink
 from tests.doubles.xrce_agent.wire import Header, Id, Submessage
+from tests.waiting import until
 
 from .board import Board
 from .checks import check_alive, check_board_before_agent, check_end_of_session, check_topics
@@ -20,7 +21,7 @@ from .checks import check_alive, check_board_before_agent, check_end_of_session,
 
 def test_the_agent_is_there_first(robot: Path, agent: Agent) -> None:
     with Board(robot, agent) as board:
-        assert board.running() < 5.0
+        assert board.running() < 5000
         (client,) = agent.clients.values()
         assert client.node == "/lab/robot_1"
         check_topics(agent)
@@ -41,14 +42,12 @@ def test_the_agent_is_restarted(robot: Path, agent: Agent, pause: float) -> None
     with Board(robot, agent) as board:
         board.running()
         check_alive(board, 0.5)
-        before = board.began()
+        began, cycles = board.began(), board.cycles()
         agent.restart(pause)
-        restarted = time.monotonic()
-        assert board.running() < 3.0
+        assert board.running() - cycles < 1000 * (3.0 + pause)
         assert board.next("got_reliable") == 0.5  # the board has kept its setpoint
         check_alive(board, 0.75)
-        lost = 1000 * (board.began(restarted) - before)
-        assert -60 <= lost <= 60 + board.statistic("missed"), "a cycle is lost only if the computer is late"
+        assert abs(board.began() - began) < 0.06, "a cycle is lost only if the computer is late"
         diagnostics = board.diagnostics()
         assert diagnostics.values["reconnects"] == "1"
         assert (diagnostics.state, diagnostics.values["faults"]) == ("enabled", "0")
@@ -59,38 +58,18 @@ def test_the_first_samples_after_a_reconnection_are_new(robot: Path, agent: Agen
     """After a reconnection, no old value is sent: neither values of the board nor setpoints."""
     with Board(robot, agent) as board:
         board.running()
-        began = board.began()
-        for _ in range(5):
+        for _ in range(3):
+            before = board.cycles()
             agent.kill()
-            time.sleep(0.5)
+            board.lose()
             agent.topics.publish("rt/lab/reliable", bytes(8))  # no agent is there that could keep it
-            restarted = time.monotonic()
+            since = agent.topics.count
             agent.start()
             board.running()
             board.next("cycles")
-            missed = board.statistic("missed")
             for topic in ("cycles", "cycles_too"):
-                when, cycles = board.timed(topic, restarted)[0]
-                assert 1000 * (restarted - began) - missed - 40 <= cycles <= 1000 * (when - began) + 40
+                assert board.values(topic, since)[0] > before + 1000, "the board was alone for longer than a second"
         assert board.next("got_reliable") == 0.25
-        assert board.stop() == ""
-
-
-@pytest.mark.parametrize("seconds", [0.4, 3.0])
-def test_a_short_freeze_ends_no_session(robot: Path, agent: Agent, seconds: float) -> None:
-    """An agent is busy for seconds when other boards leave."""
-    with Board(robot, agent) as board:
-        board.running()
-        began = time.monotonic()
-        agent.freeze()
-        time.sleep(seconds)
-        agent.thaw()
-        board.running()
-        time.sleep(0.3)
-        assert len(agent.created) == 1
-        cycles = board.values("cycles", began)
-        assert cycles == sorted(set(cycles))
-        assert board.statistic("reconnects") == 0
         assert board.stop() == ""
 
 
@@ -99,10 +78,10 @@ def test_a_frozen_agent_is_given_up_and_found_again(robot: Path, agent: Agent) -
         board.running()
         check_alive(board, 0.5)
         agent.freeze()
-        time.sleep(5.0)
-        thawed = time.monotonic()
+        board.lose()
+        sessions = len(agent.created)
         agent.thaw()
-        agent.wait_until(lambda: bool(agent.created) and agent.created[-1][0] > thawed)
+        agent.wait_until(lambda: len(agent.created) > sessions)
         check_alive(board, 0.75)
         assert board.statistic("reconnects") == 1
         assert board.stop() == ""
@@ -115,7 +94,8 @@ def test_a_cable_is_pulled(robot: Path, tmp_path: Path) -> None:
             check_alive(board, 0.5 + turn / 8)
             agent.kill()
             assert not (tmp_path / "line").exists()
-            time.sleep(0.2 * turn)
+            if turn % 2:
+                board.lose()
             agent.start()
         agent.wait_until(lambda: board.statistic("reconnects") == 4)
         assert board.stop() == ""
@@ -126,7 +106,7 @@ def test_a_line_without_an_agent_on_it(robot: Path, tmp_path: Path) -> None:
     with Agent(PtyLink(tmp_path / "line")) as agent, Board(robot, agent) as board:
         board.running()
         agent.freeze()
-        time.sleep(5.0)  # time in which the terminal's buffer fills, and the board gives up
+        board.lose()
         agent.thaw()
         agent.wait_until(lambda: len(agent.created) >= 2)
         check_alive(board, 0.5)
@@ -141,12 +121,14 @@ def test_the_board_is_restarted(robot: Path, agent: Agent, way: str) -> None:
         board.kill() if way == "killed" else board.stop()
     for turn in range(5):
         with Board(robot, agent) as board:
-            end = time.monotonic() + 0.5
-            while time.monotonic() < end:
+            since = agent.topics.count
+
+            def flooded(board: Board = board, since: int = since) -> bool:
                 board.set("reliable", 0.25)
                 board.set("quick", 0.25)
-                time.sleep(0.001)
-            board.running()
+                return len(board.values("cycles_too", since)) > 5
+
+            until(flooded, agent.tail, pause=0.001)
             check_alive(board, 0.5 + turn / 16)
             if way == "killed":
                 board.kill()
@@ -160,17 +142,17 @@ def test_loss_both_ways(robot: Path, agent: Agent) -> None:
         board.running()
         heard = agent.topics.subscribe("rt/lab/cycles", reliable=True)
         agent.to_board.loss = agent.from_board.loss = 0.1
-        began = time.monotonic()
+        since = agent.topics.count
+        agent.log.clear()
         for number in range(40):
             value = 1.0 + number / 64
             board.set("reliable", value)
             board.wait_for("got_reliable", value, 5.0)
-        lost = [frame for frame in agent.log if frame.fate == "lost" and frame.monotonic > began]
-        assert len(lost) > 10
+        assert sum(frame.fate == "lost" for frame in agent.log) > 10
         assert len(agent.created) == 1
-        cycles = board.values("cycles", began)
+        cycles = board.values("cycles", since)
         assert cycles == sorted(set(cycles))
-        assert len(heard.samples) > 0.5 * (time.monotonic() - began) / 0.020
+        assert len(heard.samples) > 0.5 * (cycles[-1] - cycles[0]) / 20
         assert board.stop() == ""
 
 
@@ -189,13 +171,13 @@ def test_duplicates_and_another_order(robot: Path, agent: Agent) -> None:
         board.running()
         for faults in (agent.to_board, agent.from_board):
             faults.duplicate, faults.reorder, faults.delay = 0.3, 0.3, (0.0, 0.005)
-        began = time.monotonic()
-        for number in range(100):
+        since = agent.topics.count
+        for number in range(60):
             board.set("reliable", 1.0 + number / 64)
-            time.sleep(0.01)
-        board.wait_for("got_reliable", 1.0 + 99 / 64)  # the newest value, not a late one
+            board.publishes(1)
+        board.wait_for("got_reliable", 1.0 + 59 / 64)  # the newest value, not a late one
         for topic in ("got_reliable", "cycles", "cycles_too"):
-            values = board.values(topic, began)
+            values = board.values(topic, since)
             assert len(values) > 20
             assert values == sorted(values), topic
         assert len(agent.created) == 1
@@ -211,9 +193,9 @@ def test_a_slow_line(robot: Path, agent: Agent, delay: float, sessions: int) -> 
     with Board(robot, agent) as board:
         board.running()
         check_alive(board, 0.5)
-        began = time.monotonic()
-        time.sleep(1.5)
-        assert len(board.values("cycles_too", began)) > 60
+        since = agent.topics.count
+        board.passes(1500)
+        assert len(board.values("cycles_too", since)) > 60
         assert len(agent.created) <= sessions
         assert board.stop() == ""
 
@@ -224,7 +206,7 @@ class SlowAgent(Agent):
     seconds = 1.2
 
     def _create_client(self, peer: Hashable, header: Header, part: Submessage) -> None:
-        time.sleep(self.seconds)
+        time.sleep(self.seconds)  # the agent is slow
         super()._create_client(peer, header, part)
 
 
@@ -235,7 +217,7 @@ def test_an_agent_that_is_slow_to_make_a_session(robot: Path) -> None:
         check_alive(board, 0.5)
         sessions = len(agent.created)
         assert sessions <= 5
-        time.sleep(1.0)
+        board.passes(1000)
         assert len(agent.created) == sessions
         assert board.stop() == ""
 
@@ -250,14 +232,17 @@ def test_garbage_and_damaged_frames(robot: Path, tmp_path: Path, line: str) -> N
         agent.to_board.truncate = agent.from_board.truncate = 0.1
         if line == "serial":  # for datagrams, the system's checksums would detect it
             agent.to_board.corrupt = agent.from_board.corrupt = 0.1
-        end = time.monotonic() + 3.0
-        while time.monotonic() < end:
+        end = board.cycles() + 3000
+
+        def spoilt() -> bool:
             size = chance.randrange(1, 600)
             header = bytes([0x81, chance.choice((0, 1, 0x80))]) + chance.randrange(65536).to_bytes(2, "little")
             agent.inject((header if chance.random() < 0.7 else b"") + chance.randbytes(size), chance.random() < 0.3)
             board.set("reliable", chance.random())
             board.topics.publish("rt/lab/quick", chance.randbytes(chance.randrange(40)), False)
-            time.sleep(0.003)
+            return board.cycles() > end
+
+        until(spoilt, agent.tail, pause=0.003)
         agent.to_board.clear()
         agent.from_board.clear()
         board.running()
@@ -272,10 +257,8 @@ def test_a_dead_board_leaves_the_graph(robot: Path, agent: Agent) -> None:
         board.running()
         (client,) = agent.clients.values()
         assert client.dead_after == 3.0
-        began = time.monotonic()
         board.process.send_signal(signal.SIGSTOP)
         agent.wait_until(lambda: not agent.clients, 8.0)
-        assert time.monotonic() - began > client.dead_after
         board.process.send_signal(signal.SIGCONT)
         board.running()
         board.kill()
@@ -293,9 +276,9 @@ def test_two_boards(robot: Path, agent: Agent) -> None:
         one.wait_for("got_reliable", 0.5)
         other.wait_for("got_reliable", 0.5)
         one.kill()
-        began = time.monotonic()
-        time.sleep(0.5)
-        assert len(other.values("cycles", began)) > 15
+        since = agent.topics.count
+        other.passes(500)
+        assert len(other.values("cycles", since)) > 15
         assert other.stop() == ""
 
 
@@ -303,7 +286,7 @@ def test_two_boards(robot: Path, agent: Agent) -> None:
 def test_what_is_refused_is_asked_for_again(robot: Path, agent: Agent, kind: Kind) -> None:
     agent.refuse(Status.DDS_ERROR, kind, times=1)
     with Board(robot, agent) as board:
-        assert 1.0 < board.running() < 10.0
+        assert board.running() < 10_000
         check_alive(board, 0.5)
         assert board.statistic("reconnects") == 0
         assert board.stop() == ""
@@ -313,7 +296,7 @@ def test_an_agent_that_answers_pings_only(robot: Path, agent: Agent) -> None:
     """Like half a restart: the agent drops all requests."""
     agent.mute = {Id.CREATE}
     with Board(robot, agent) as board:
-        time.sleep(2.5)
+        agent.wait_until(lambda: len(agent.log.of(Id.CREATE, from_board=True)) > 3)
         agent.mute = set()
         board.running()
         check_alive(board, 0.5)

@@ -6,7 +6,6 @@ from __future__ import annotations
 import shutil
 import struct
 import subprocess
-import time
 from pathlib import Path
 
 import pytest
@@ -82,7 +81,8 @@ def test_two_programs_with_one_name_have_two_sessions(robot: Path, agent: Agent,
     programs = [start(robot, agent), start(other, agent)]
     try:
         agent.wait_until(lambda: len(agent.clients) == 2, PATIENCE)
-        time.sleep(3.0)
+        told = len(agent.topics.samples("rt/diagnostics"))
+        agent.wait_until(lambda: len(agent.topics.samples("rt/diagnostics")) >= told + 30)  # 3 s of both
         assert len(agent.created) == 2
         programs[1].kill()
         programs[1].wait()

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import itertools
-import statistics
 import subprocess
 import time
 from collections.abc import Callable, Iterator
@@ -66,19 +64,16 @@ def test_all_parameters_at_once_in_fragments(small_jiwy: Path, agent: Agent) -> 
     with node(small_jiwy, agent) as parameters:
         serving(agent)
         found = parameters.list()
-        began = time.monotonic()
-        turn = 0
-        while time.monotonic() < began + 0.7:
-            turn += 1
+        agent.log.clear()
+        since = agent.topics.count
+        for turn in range(1, 20):
             wanted = {name: 0.001 * index + turn for index, name in enumerate(found)}
             assert parameters.set_atomically(wanted) == (True, "")
             assert parameters.get(found) == list(wanted.values())
             assert list(parameters.described(found)) == found
         for from_board in (True, False):
-            assert len(agent.log.of(Id.FRAGMENT, from_board, since=began)) > 10
-        published = [sample.time for sample in agent.topics.samples("rt/pan_publisher", began)]
-        assert len(published) > 15
-        assert statistics.median(after - before for before, after in itertools.pairwise(published)) < 0.05
+            assert len(agent.log.of(Id.FRAGMENT, from_board)) > 10
+        assert len(agent.topics.samples("rt/pan_publisher", since)) > 15, "about one in each turn"
 
 
 def test_fragments_on_a_bad_line(small_jiwy: Path, agent: Agent) -> None:
@@ -104,7 +99,7 @@ def forget_nothing(agent: Agent) -> None:
     """The board believes that the agent is gone.  The agent keeps its session, with the fragments of the reply."""
     agent.mute.add(Id.DELETE)
     agent.freeze()
-    time.sleep(4.5)
+    time.sleep(4.5)  # longer than the board waits for a frozen agent
     agent.thaw()
 
 

@@ -203,9 +203,9 @@ def test_a_killed_run_keeps_its_rows_up_to_the_last_second(
     program = motor if mode == "--realtime" else connected_motor
     command = program.arguments(tmp_path, 60, None, mode)
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-        reached = until(lambda: traced(tmp_path)) - time.monotonic()
-        time.sleep(3.0)
-        reached += time.monotonic()
+        reached = until(lambda: traced(tmp_path)) - time.monotonic()  # the run goes on while nobody looks
+        until(lambda: traced(tmp_path) > 3.0)
+        reached += time.monotonic()  # the run goes on while nobody looks
         process.kill()
         process.communicate(timeout=10)
     for name in ("trace.csv", "topics.csv"):
@@ -240,7 +240,7 @@ def test_rows_that_a_slow_file_does_not_take_are_counted(tmp_path: Path) -> None
     command = program.arguments(tmp_path, 6, None, "--realtime")
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         with (tmp_path / "trace.csv").open() as pipe:
-            time.sleep(6.0)
+            time.sleep(6.0)  # the pipe is full, and nobody reads it
             times = [float(line.split(",")[0]) for line in pipe.readlines()[1:]]
         stdout, stderr = process.communicate(timeout=30)
     statistics = Run(0, stdout, stderr, tmp_path).statistics

@@ -36,7 +36,7 @@ static _Atomic uint64_t finished; /* number of the newest write that has returne
 static uint64_t time_ns(void)
 {
     struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
+    clock_gettime(CLOCK_MONOTONIC, &now); /* the threads run as long as they may */
     return (uint64_t)now.tv_sec * 1000000000U + (uint64_t)now.tv_nsec;
 }
 

@@ -34,7 +34,7 @@ static int failed(const char *what)
 static void wait_ms(long ms)
 {
     const struct timespec time = {.tv_sec = ms / 1000, .tv_nsec = ms % 1000 * 1000000};
-    nanosleep(&time, NULL);
+    nanosleep(&time, NULL); /* a user's program */
 }
 
 static int run_once(void)

@@ -7,8 +7,8 @@ A terminal of this computer takes the place of the serial port.  The board's tim
 from __future__ import annotations
 
 import os
+import select
 import threading
-import time
 import tty
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -47,7 +47,7 @@ def terminal(pico: Emulator) -> Iterator[Path]:
                 try:
                     data = data[os.write(own, data) :]
                 except BlockingIOError:
-                    time.sleep(0.001)
+                    select.select([], [own], [], 1.0)
 
     thread = threading.Thread(target=run)
     thread.start()

@@ -1,22 +1,29 @@
 /* The user's own main(): two targets, of which one runs for a short time. */
 #include <stdio.h>
-#include <time.h>
 
 #include "left.h"
 #include "right.h"
+
+/* Waits until the cycle with this number has run. */
+static void run_until(uint32_t cycles)
+{
+    epg_status_t status = {0};
+    while (status.statistics.cycles < cycles) {
+        (void)left_status(&status);
+    }
+}
 
 int main(void)
 {
     if (!left_start()) {
         return 1;
     }
-    struct timespec delay = {.tv_nsec = 200000000};
-    nanosleep(&delay, NULL);
+    run_until(200);
     left_enable(true);
     (void)left_set_setpoint(0.25);
     left_values_t values;
     (void)left_get(&values); /* requests them */
-    nanosleep(&delay, NULL);
+    run_until(400);
     epg_status_t status;
     if (!left_status(&status) || !left_get(&values)) {
         return 2;
