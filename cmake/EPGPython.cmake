@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 # Calls EPG's Python code from CMake.
 
-# _epg_find_python(<result> [QUIET])
+# _epg_find_python(<result>)
 #
 # Sets <result> to the path of the Python interpreter.  It is Python3_EXECUTABLE or Python_EXECUTABLE if one is set,
 # else west's interpreter if west configures, else the interpreter that FindPython3 finds.  Stops with an error if there
-# is none, or if it is older than 3.10; with QUIET, <result> is then empty.
+# is none, or if it is older than 3.10.
 #
 # The interpreter is searched once per build tree, and again if these variables change or the interpreter is gone.
 function(_epg_find_python result)
@@ -31,24 +31,20 @@ function(_epg_find_python result)
     if(DEFINED ENV{PYTHONHOME})
       string(APPEND remedy "\nThe environment variable PYTHONHOME is '$ENV{PYTHONHOME}'. If that is not the folder of this Python's library, no Python starts: unset PYTHONHOME")
     endif()
+    if(NOT found)
+      message(FATAL_ERROR "EPG needs Python 3.10 or newer, but none was found.\n${remedy}")
+    endif()
     # The found program may be a launcher that searches the real interpreter at each start (pyenv's takes 100 ms).
     execute_process(COMMAND "${found}" -c "import sys; print('%d.%d' % sys.version_info[:2], sys.executable)"
-      OUTPUT_VARIABLE answer OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_VARIABLE error RESULT_VARIABLE status)
-    set(problem "")
-    if(NOT found)
-      set(problem ", but none was found.")
-    elseif(NOT status STREQUAL "0" AND found MATCHES "[/\\]WindowsApps[/\\]")
-      set(problem ". This is not Python: it is Windows' link to the Microsoft Store: ${found}")
-    elseif(NOT status STREQUAL "0" OR NOT answer MATCHES "^([0-9]+\\.[0-9]+) (.+)$")
-      set(problem ", but this interpreter cannot be started: ${found}\n${error}")
-    elseif(CMAKE_MATCH_1 VERSION_LESS 3.10)
-      set(problem "; this is ${CMAKE_MATCH_1}: ${found}")
+      OUTPUT_VARIABLE answer OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_VARIABLE problem RESULT_VARIABLE status)
+    if(NOT status STREQUAL "0" AND found MATCHES "[/\\]WindowsApps[/\\]")
+      message(FATAL_ERROR "EPG needs Python 3.10 or newer. This is not Python: it is Windows' link to the Microsoft Store: ${found}\n${remedy}")
     endif()
-    if(problem AND ARGN)
-      set(${result} "" PARENT_SCOPE)
-      return()
-    elseif(problem)
-      message(FATAL_ERROR "EPG needs Python 3.10 or newer${problem}\n${remedy}")
+    if(NOT status STREQUAL "0" OR NOT answer MATCHES "^([0-9]+\\.[0-9]+) (.+)$")
+      message(FATAL_ERROR "EPG needs Python 3.10 or newer, but this interpreter cannot be started: ${found}\n${problem}\n${remedy}")
+    endif()
+    if(CMAKE_MATCH_1 VERSION_LESS 3.10)
+      message(FATAL_ERROR "EPG needs Python 3.10 or newer; this is ${CMAKE_MATCH_1}: ${found}\n${remedy}")
     endif()
     file(TO_CMAKE_PATH "${CMAKE_MATCH_2}" executable)
     set(EPG_PYTHON "${executable}" CACHE INTERNAL "Python interpreter that runs EPG")
@@ -73,7 +69,7 @@ endfunction()
 #
 # Runs `epg <argument>...`.  Its messages go to the terminal directly, because CMake would wrap their lines.  The global
 # property EPG_EXIT_STATUS is set to the exit status; epg/cli/main.py lists the values.
-#   <result>  variable that is set to 1 if the exit status is 0, else to 0
+#   <result>  variable that is set to TRUE if the exit status is 0, else to FALSE
 function(_epg_run result)
   _epg_find_python(python)
   _epg_environment(environment)
@@ -83,8 +79,11 @@ function(_epg_run result)
     WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}"
     RESULT_VARIABLE status)
   set_property(GLOBAL PROPERTY EPG_EXIT_STATUS "${status}")
-  string(COMPARE EQUAL "${status}" "0" good)
-  set(${result} "${good}" PARENT_SCOPE)
+  if(status STREQUAL "0")
+    set(${result} TRUE PARENT_SCOPE)
+  else()
+    set(${result} FALSE PARENT_SCOPE)
+  endif()
 endfunction()
 
 # _epg_environment_command(<result>)
@@ -127,12 +126,17 @@ endfunction()
 # Sets <result> to the absolute paths of the user's folders of targets: the list in the variable EPG_TARGETS_PATH, else
 # the paths in the environment variable of this name.
 function(_epg_user_folders result)
+  if(NOT EPG_TARGETS_PATH AND "$ENV{EPG_TARGETS_PATH}" STREQUAL "")
+    set(${result} "" PARENT_SCOPE)
+    return()
+  endif()
   set(folders "${EPG_TARGETS_PATH}")
   if(NOT folders)
     file(TO_CMAKE_PATH "$ENV{EPG_TARGETS_PATH}" folders)
   endif()
+  list(FILTER folders EXCLUDE REGEX "^$")
   set(absolute "")
-  foreach(folder ${folders}) # without empty ones
+  foreach(folder IN LISTS folders)
     get_filename_component(folder "${folder}" ABSOLUTE BASE_DIR "${CMAKE_CURRENT_SOURCE_DIR}")
     list(APPEND absolute "${folder}")
   endforeach()
@@ -171,25 +175,13 @@ endfunction()
 
 # _epg_own_roots(<result>)
 #
-# Sets <result> to the folders of targets that come with EPG, those in integration/ and targets/, and those of plug-ins,
-# if there is a Python.  epg/generator/data.py has the same list of EPG's own.
+# Sets <result> to the folders of targets that come with EPG: those in integration/, and targets/.  epg/generator/data.py
+# has the same list.
 function(_epg_own_roots result)
-  get_property(roots GLOBAL PROPERTY EPG_OWN_ROOTS)
-  if(NOT roots)
-    _epg_data_folder(data)
-    _epg_pattern(pattern "${data}")
-    file(GLOB roots "${pattern}/integration/*/targets")
-    _epg_find_python(python QUIET)
-    _epg_environment(environment)
-    _epg_python_folder(folder)
-    if(python)
-      execute_process(COMMAND "${CMAKE_COMMAND}" -E env ${environment} "${python}" "${folder}/__main__.py" find-tools --plugins
-        OUTPUT_VARIABLE of_plugins)
-    endif()
-    list(APPEND roots ${of_plugins} "${data}/targets")
-    set_property(GLOBAL PROPERTY EPG_OWN_ROOTS "${roots}")
-  endif()
-  set(${result} ${roots} PARENT_SCOPE)
+  _epg_data_folder(data)
+  _epg_pattern(pattern "${data}")
+  file(GLOB roots "${pattern}/integration/*/targets")
+  set(${result} ${roots} "${data}/targets" PARENT_SCOPE)
 endfunction()
 
 # _epg_require(<function> <usage> <name> <unparsed> <missing> <keyword>...)

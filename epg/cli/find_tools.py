@@ -17,7 +17,6 @@ from epg.cli.report import to_json
 from epg.generator import bootstrap
 from epg.generator.data import targets_roots
 from epg.generator.diagnostics import Diagnostics
-from epg.generator.plugins import targets_folders
 from epg.generator.tools.find_tool import Finding, Surroundings, find_tool
 from epg.generator.tools.project_version import choose_version
 from epg.generator.tools.remedy import get_it, problem_of
@@ -29,13 +28,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--variable", action="append", default=[], dest="variables", metavar="NAME=VALUE", help="a variable of CMake"
     )
-    parser.add_argument("--plugins", action="store_true", help="print only the folders of targets of plug-ins")
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
-    if options.plugins:
-        sys.stdout.write(";".join(folder.as_posix() for folder in targets_folders()))
-        return 0
     bootstrap.check_cache()
     tools = load_tools(targets_roots(user_roots()), diagnostics)
     diagnostics.stop_if_errors()

@@ -12,7 +12,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from epg.generator import bootstrap
 from epg.generator.diagnostics import Diagnostics, UserError
 from epg.generator.source import Span
 
@@ -29,7 +28,6 @@ def entry_points(group: str) -> Mapping[str, EntryPoint]:
 
 def load(entry: EntryPoint) -> Any:
     """The object of an entry point.  Raises UserError if the package cannot be imported."""
-    bootstrap.ensure()  # also for commands that run without packages
     try:
         return entry.load()
     except Exception as problem:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import shutil
@@ -15,7 +14,6 @@ from pathlib import Path
 import pytest
 
 from tests.cmake.project import CMAKE_DIR, ROOT
-from tests.cmake.test_families import OWN, PROJECT, TOOL
 
 EXAMPLE = ROOT / "examples" / "plugin"
 MODEL = EXAMPLE / "controller"
@@ -107,29 +105,6 @@ def test_a_run_without_plugins_does_not_look_for_them(tmp_path: Path) -> None:
     command = [sys.executable, "-c", program, "generate", "jiwy", "--output", str(tmp_path / "out")]
     command += ["--tcf", "host_jiwy.tcf", "--model", str(jiwy / "model")]
     subprocess.run([*command, "--bindings", str(jiwy / "jiwy.bindings.yaml")], check=True, cwd=ROOT)
-
-
-def test_a_family_of_a_plugin_brings_a_function_before_project(site: Path, tmp_path: Path) -> None:
-    """The function finds an SDK that the plug-in describes.  Without the plug-in, EPG does not know it."""
-    targets, home = site / "epg_two_rates/targets", tmp_path / "home"
-    for file, text in (
-        (targets / "families/motor/sdk.cmake", OWN),
-        (targets / "tools/motor_sdk.json", json.dumps(TOOL)),
-        (home / "motor/1.2/motor.h", "1.2"),
-        (tmp_path / "CMakeLists.txt", PROJECT % CMAKE_DIR),
-    ):
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text)
-
-    def configure(build: str, path: str) -> str:
-        command = ["cmake", "-S", str(tmp_path), "-B", str(tmp_path / build), f"-DEPG_PATH={ROOT}", "-Dwanted=1.2"]
-        command += [f"-DPython3_EXECUTABLE={sys.executable}"]
-        environment = os.environ | {"HOME": str(home), "PYTHONPATH": path}
-        done = subprocess.run(command, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-        return done.stdout
-
-    assert f"found: {home}/motor/1.2 1.2\n" in configure("with", str(site))
-    assert "unknown argument: MOTOR_SDK" in configure("without", "")
 
 
 @pytest.fixture(params=["checkout", "wheel"])
