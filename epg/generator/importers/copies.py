@@ -12,11 +12,11 @@ from epg.generator.models.code import ModelLibrary
 from epg.generator.models.code_parts import SourceRange
 from epg.generator.models.link import Linked
 
-Places = tuple[tuple[SourceRange, ...], ...]
+ParameterPlaces = tuple[tuple[SourceRange, ...], ...]
 """The places of each parameter's value."""
 
 
-def copies(linked: Linked, places: Places, library: ModelLibrary) -> dict[str, str]:
+def copies(linked: Linked, places: ParameterPlaces, library: ModelLibrary) -> dict[str, str]:
     """Copies of the files that set a parameter to which the library gives a new value.
 
     Only the values differ from the originals.  ``places`` are those of each parameter's value.
@@ -31,13 +31,15 @@ def copy_name(name: str, path: Path) -> str:
     return f"{name}_copies/{path.name}"
 
 
-def new_values(places: Places, library: ModelLibrary) -> dict[Path, list[tuple[int, int, float]]]:
+def new_values(places: ParameterPlaces, library: ModelLibrary) -> dict[Path, list[tuple[int, int, float]]]:
     """The new values in each file that has one, with the start and the end of the text that they replace."""
+    values = library.values
     edits: dict[Path, list[tuple[int, int, float]]] = {}
     for parameter, values_at in zip(library.model.parameters, places, strict=True):
-        if parameter.name in library.values:
-            for place in values_at:
-                edits.setdefault(place.file, []).append((place.start, place.end, library.values[parameter.name]))
+        if parameter.name not in values:
+            continue
+        for place in values_at:
+            edits.setdefault(place.file, []).append((place.start, place.end, values[parameter.name]))
     return edits
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from epg.generator.dataclass import dataclass
 from epg.generator.emit.text import Code
-from epg.generator.importers.copies import Places, copies, copy_name, new_values, shims
+from epg.generator.importers.copies import ParameterPlaces, copies, copy_name, new_values, shims
 from epg.generator.models.assignments import exact_number
 from epg.generator.models.code import ModelBuild, ModelCode, ModelLibrary, Render
 from epg.generator.models.code_parts import GlobalVariable
@@ -61,7 +61,7 @@ class CFunctionExport(ModelCode):
     time: str  # names of variables; empty if the model does not have them
     stop: str
     variables: tuple[GlobalVariable, ...]
-    places: Places
+    places: ParameterPlaces
     instance_type: str  # the typedef of the model's memory; empty for exports with global variables
     instance_header: str  # the header that declares this type
     memory: tuple[tuple[str, str], ...]  # the pointers in an instance, each with its offset in MEMORY
