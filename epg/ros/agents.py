@@ -173,26 +173,22 @@ def _on_usb(robot: Robot, program: str, usb: RobotUsb, serials: Sequence[str], d
 def _on_device(robot: Robot, program: str, text: str, diagnostics: Diagnostics) -> Agent:
     """The agent for a tty.  ``text`` is for example "/dev/ttyAMA0", "/dev/ttyAMA0:921600" or "COM3"."""
     device, _, rate = text.partition(":")
+    span = Span.of_argument(f"{robot.name}={text}", "--device")
     com = _COM_PORT.fullmatch(device)
     if com is not None:
         device = com[1].upper() if len(com[2]) == 1 else rf"\\.\{com[1].upper()}"  # as CreateFile takes it
         message = f"'{device}' is a port of Windows: agents of ROS 2 open serial ports on Linux only"
-        diagnostics.warning("agent-not-on-windows", _device_span(robot, text), message, hint=_NOT_ON_WINDOWS)
+        diagnostics.warning("agent-not-on-windows", span, message, hint=_NOT_ON_WINDOWS)
     if (
         not (device.startswith("/dev/") or com)
         or not device.isprintable()
         or not re.fullmatch("([1-9][0-9]{2,6})?", rate)
     ):
         hint = "write for example /dev/ttyAMA0 or /dev/ttyAMA0:921600, or COM3"
-        span = _device_span(robot, text)
         diagnostics.error("wrong-device", span, f"'{text}' is not a tty, with or without a baud rate", hint=hint)
     stem = re.sub("[^0-9A-Za-z]+", "_", device.removeprefix("/dev/")).strip("_")
     arguments = _serial_arguments(device, int(rate or DEFAULT_BAUD_RATE))
     return Agent(f"agent_{robot.name}_{stem}", program, arguments, device, None, (robot,))
-
-
-def _device_span(robot: Robot, text: str) -> Span:
-    return Span.of_argument(f"{robot.name}={text}", "--device")
 
 
 def _serial_arguments(device: str, rate: int) -> tuple[str, ...]:

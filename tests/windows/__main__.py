@@ -214,7 +214,7 @@ class Run:
         lists = project / "CMakeLists.txt"
         lists.write_text(lists.read_text().replace(" C CXX)", " C)"))  # Debian's compiler for C++ is not installed
         command = (self.computer.python, "-m", "epg", "connect", project, "--no-browser")
-        served = self.computer.start(*command, cwd=self.source, env={"CC": "gcc"})
+        served = self.computer.start(*command, cwd=self.source)
         assert served.stdout is not None
         try:
             address = next(match[0] for line in served.stdout if (match := re.search(r"http://127\S+#\S+", line)))

@@ -14,7 +14,7 @@ import subprocess
 import sys
 import tarfile
 import zipfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -82,21 +82,18 @@ class Computer:
             "WINEDEBUG": "-all",
             "WINEDLLOVERRIDES": "mscoree,mshtml,wbemprox=",  # else platform.platform() crashes
             "WINEPATH": ";".join(map(windows, paths)),
+            "CC": "gcc",
             "EPG_FORWARD": str(self.scripts),
         }
 
     def start(
-        self,
-        *command: str | Path,
-        cwd: Path | None = None,
-        stdin: int | None = subprocess.DEVNULL,
-        env: Mapping[str, str] | None = None,
+        self, *command: str | Path, cwd: Path | None = None, stdin: int | None = subprocess.DEVNULL
     ) -> subprocess.Popen[str]:
-        """Starts a program of Windows, with more variables ``env``."""
+        """Starts a program of Windows."""
         return subprocess.Popen(
             ["wine", *(windows(word) if isinstance(word, Path) else word for word in command)],
             cwd=cwd or self.folder,
-            env=self.environment | dict(env or {}),
+            env=self.environment,
             stdin=stdin,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,

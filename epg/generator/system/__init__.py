@@ -19,18 +19,16 @@ if TYPE_CHECKING:
 
 
 class Group(Protocol):
-    """A program that was started, and all programs that it starts."""
+    """A program that was started, and all programs that it starts.
+
+    ``is_running`` is True while one of them runs, as far as the system tells it.  ``kill`` ends all of them now.
+    """
 
     process: subprocess.Popen[bytes]
 
     def ask_to_end(self) -> None: ...
-    def is_running(self) -> bool:
-        """True while a program of the group runs, as far as the system tells it."""
-        ...
-
-    def kill(self) -> None:
-        """Ends all of them now, and forgets them."""
-        ...
+    def is_running(self) -> bool: ...
+    def kill(self) -> None: ...
 
 
 class OperatingSystem(Protocol):

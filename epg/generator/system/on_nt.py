@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 import signal
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -130,8 +130,7 @@ class WindowsJob:
         return any(found.raw[_ACTIVE : _ACTIVE + 4])
 
     def kill(self) -> None:
-        with suppress(OSError):
-            self._kernel.TerminateJobObject(self._job, 1)
+        self._kernel.TerminateJobObject(self._job, 1)
 
     def __del__(self) -> None:
         self._kernel.CloseHandle(self._job)

@@ -7,9 +7,7 @@
 
 #include "clock.h"
 
-enum { NAP_NS = 100000 };
-
 void epg_port_wait_for_bytes(void)
 {
-    epg_host_sleep_until(epg_host_monotonic_ns() + NAP_NS);
+    epg_host_sleep_until(epg_host_monotonic_ns() + 100000U); /* 0.1 ms */
 }
