@@ -246,7 +246,7 @@ def test_message(
     lines = lines_after([(each, edits[0]) for each, edits in proposed if len(edits) == 1])
     for each, edits in proposed:
         lines += [f"or: {line}" for edit in edits for line in lines_after([(each, edit)]) if len(edits) > 1]
-    assert "".join(f"{line}\n" for line in lines).replace(os.sep, "/") == read_meant(case)
+    assert "".join(f"{line}\n" for line in lines).replace(os.sep, "/") == read_meant(case).replace(os.sep, "/")
     counted["meant"] += len(proposed)
 
 

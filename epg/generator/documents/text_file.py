@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -51,7 +53,8 @@ def read_text(
         diagnostics.error("file-not-found", whole, f"there is no file '{path.name}'", hint=hint)
         return None
     except OSError as error:
-        message = f"cannot read '{path.name}': {error.strerror or error}"
+        reason = os.strerror(errno.EISDIR) if path.is_dir() else error.strerror or error  # Windows permits no folder
+        message = f"cannot read '{path.name}': {reason}"
         diagnostics.error("file-unreadable", whole, message, hint=long_path_remedy(str(path)))
         return None
     if len(data) > MAX_BYTES:

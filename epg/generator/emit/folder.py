@@ -22,7 +22,7 @@ def present_files(folder: Path, names: Iterable[str]) -> list[Path]:
         above = [parent for parent in path.parents if parent != folder and folder in parent.parents]
         paths += [place for place in (folder, *above) if os.path.lexists(place) and not place.is_dir()]
         paths += [path] if os.path.lexists(path) else []
-    return sorted(set(paths))
+    return sorted(set(paths), key=Path.as_posix)  # Windows' own order has no capitals
 
 
 def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:

@@ -28,7 +28,7 @@ def write_outputs(folder: Path, files: Mapping[str, str]) -> list[str]:
     inside = folder.resolve()
     for name, text in sorted(files.items()):
         path = folder / name
-        if os.path.normpath(name).startswith(("..", "/")):
+        if os.path.normpath(name).startswith("..") or Path(name).anchor:
             raise ValueError(f"{name!r} is outside the output folder")
         if inside not in path.resolve().parents:
             raise PermissionError(errno.EPERM, "a link leads out of the output folder: remove it", str(path))
