@@ -6,23 +6,23 @@ The argument is the folder of the drive of a board, which has the letter U.
 
 import ctypes
 import os
+import queue
 import subprocess
 import sys
 import threading
-import time
 from pathlib import Path
 
 from epg.connect.build.process import Process
 from epg.generator.tools.uf2_drives import uf2_drives
 
 SYNCHRONIZE, STILL_WAITS = 0x100000, 258
-SLEEP = "import time; time.sleep(600)"
+SLEEP = "import time; time.sleep(600)"  # a program that does not end by itself
 PARENT = f"""if True:
     import signal, subprocess, sys, time
     signal.signal(signal.SIGBREAK, signal.SIG_IGN)
     child = subprocess.Popen([sys.executable, "-c", "{SLEEP}"], creationflags=0x200)  # as Ninja starts compilers
     print(child.pid, flush=True)
-    time.sleep(600)
+    time.sleep(600)  # it does not end by itself
 """
 BINDER = f"""if True:
     import os, sys
@@ -43,19 +43,18 @@ def runs(process: int) -> bool:
 
 
 def ends(process: int) -> bool:
-    end = time.monotonic() + 20
-    while runs(process) and time.monotonic() < end:
-        time.sleep(0.2)
-    return not runs(process)
+    kernel = ctypes.WinDLL("kernel32")  # type: ignore[attr-defined]
+    handle = kernel.OpenProcess(SYNCHRONIZE, False, process)
+    waits = bool(handle) and kernel.WaitForSingleObject(handle, 20_000) == STILL_WAITS
+    kernel.CloseHandle(handle)
+    return not waits
 
 
-said: list[str] = []
-process = Process((sys.executable, "-c", PARENT), Path("."), os.environ, said.append, modest=True)
+said: queue.Queue[str] = queue.Queue()
+process = Process((sys.executable, "-c", PARENT), Path("."), os.environ, said.put, modest=True)
 thread = threading.Thread(target=process.run)
 thread.start()
-while not said:
-    time.sleep(0.1)
-child = int(said[0])
+child = int(said.get(timeout=60))
 assert runs(child)
 process.cancel()
 thread.join(30)
