@@ -55,6 +55,7 @@ def test_a_program_runs_until_it_is_stopped(built: Path, tmp_path: Path, monkeyp
         until(lambda: len(processes(built)) == 1)
         first = page.until(lambda state: state["live"]["ports"])["live"]["ports"][0]
         assert first == {"path": str(built / "build/robot_host.port"), "device": "the program that runs"}
+        until(Path(first["path"]).exists)
         page.post("live/connect", path=first["path"])
         assert page.state()["live"]["target"]["matches"], "its hash is that of the build"
         page.post("cancel")

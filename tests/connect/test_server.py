@@ -458,7 +458,7 @@ def test_a_browser_is_opened_where_there_is_one(project: Path, tmp_path: Path) -
         assert process.stdout is not None
         address = process.stdout.readline().split()[-1]
         if opens:
-            until(said.exists, "no browser was opened")
+            until(lambda: said.exists() and said.read_text(), "no browser was opened")
         Page(said.read_text().strip() if opens else address).post("done")
         assert "another page" not in process.communicate(timeout=20)[0] or not opens
         assert said.exists() == opens

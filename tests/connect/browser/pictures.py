@@ -159,8 +159,7 @@ def _take(page: Any, folder: Path, name: str) -> None:
     ensure("plot")  # this also installs Pillow
     from PIL import Image
 
-    page.wait_for_timeout(300)  # the end of transitions
-    picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
+    picture = Image.open(io.BytesIO(page.screenshot(animations="disabled"))).convert("RGB")
     reduced = picture.quantize(COLOURS, dither=Image.Dither.NONE)
     reduced.save(folder / f"connect-{name}.png", optimize=True)
 
