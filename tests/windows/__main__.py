@@ -7,13 +7,14 @@ read a checkout whose lines end as on Windows.
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import os
 import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -21,6 +22,7 @@ import yaml
 
 from tests.checkout import ROOT
 from tests.connect.page import Page
+from tests.connect.robots import new_project, write_model
 from tests.connect.started import generate
 from tests.twenty_sim.generate import generate_from
 from tests.waiting import until
@@ -236,22 +238,68 @@ class Run:
             raise RuntimeError(f"{target} {ended['program']}")
         return f"{program} ran with its console on {port}; it said {said[-1]}"
 
-    def live(self) -> str:
-        """``epg live`` at COM7, which is the terminal of a host program of this computer."""
-        program, port = self.work / "linux_build/jiwy_host", self.work / "port"
+    @staticmethod
+    def sent(*lines: str) -> list[str]:
+        """The options by which ``epg live`` sends these commands."""
+        return [word for line in lines for word in ("--send", line)]
+
+    @contextlib.contextmanager
+    def com7(self, program: Path) -> Iterator[None]:
+        """COM7 is the terminal of a host program of this computer."""
+        port = self.work / "port"
         command = [str(program), "--realtime", "--console-pty", str(port), "--duration", "600"]
         with subprocess.Popen(command, stdout=subprocess.DEVNULL) as target:
             until(port.exists, "the target has no port")
             link = self.computer.prefix / "dosdevices/com7"
             link.unlink(missing_ok=True)
-            link.symlink_to(port.resolve())
+            link.symlink_to(port)
             try:
-                text = self.epg("live", "COM7", "--duration", "60", "--every", "1", "--csv", self.work / "rows.csv")
+                yield
             finally:
                 target.kill()
+
+    def live(self) -> str:
+        """Twenty signals of every control cycle, for a minute."""
+        ports = {f"in_{number}": "{unit: rad}" for number in range(10)}
+        model = write_model(self.work / "twenty", "twenty", ports, {f"out_{each}": f"in->{each}" for each in ports})
+        project, build = new_project(self.work / "twenty_signals", "host", model), self.work / "twenty_build"
+        here(
+            "cmake",
+            "-S",
+            str(project),
+            "-B",
+            str(build),
+            f"-DPython3_EXECUTABLE={sys.executable}",
+            f"-DEPG_PATH={ROOT}",
+        )
+        here("cmake", "--build", str(build))
+        rows = self.work / "rows.csv"
+        with self.com7(next(build.rglob("robot_host"))):
+            text = self.epg("live", "COM7", "--duration", "60", "--every", "1", "--csv", rows)
         if ", 0 dropped, 0 damaged" not in text:
             raise RuntimeError(text)
-        return text.strip()
+        with rows.open(encoding="utf-8") as file:
+            signals = sum(name.startswith(("inputs.", "outputs.")) for name in next(csv.reader(file)))
+        return f"{signals} signals, {text.strip()}"
+
+    def session(self) -> str:
+        """A lease, a setpoint, a parameter; a program of Windows replays the recording, and a motor is found."""
+        run, rows, picture = self.work / "run.jsonl", self.work / "run.csv", self.work / "motor.png"
+        jogs = self.sent(*(f"jog pwm_pan {duty}" for duty in ("0 100", "0.15 250", "0 300", "-0.1 400")))
+        motor = ("actuators.pwm_pan", "encoders.encoder_pan")
+        capture = self.sent("enable", "pan_subscriber=0.25", "capture setpoint_pan position_pan rows=200")
+        moved = self.sent("enable", "set Pan\\PID\\kp=3", "pan_subscriber=0.5")
+        quiet = ("--signals", "none", "--duration", "1")
+        with self.com7(self.work / "linux_build/jiwy_host"):
+            self.epg("live", "COM7", "--signals", ",".join(motor), "--csv", rows, "--duration", "0.3", *jogs)
+            said = self.epg("live", "COM7", *quiet, *capture)
+            said += self.epg("live", "COM7", *quiet, *self.sent("capture read", "stats"))
+            self.epg("live", "COM7", *moved, "--duration", "8", "--record", run)
+        if said.count("csv ") < 200 or "stat enabled=0" not in said:
+            raise RuntimeError(said)
+        found = self.epg("identify", rows, "--duty", motor[0], "--position", motor[1], "--output", picture)
+        replayed = self.epg("replay", run, next((self.work / "build Ninja").glob("**/jiwy_host.exe")))
+        return f"{found.strip().splitlines()[0]}; {replayed.strip().splitlines()[-1]}"
 
     def python_tests(self) -> str:
         """Tests of `check` that need no program of Linux, with Python of Windows."""
@@ -285,6 +333,7 @@ class Run:
         report.step("programs and drives of Windows", self.system)
         report.step("epg connect builds and runs", self.page)
         report.step("epg live COM7 for 60 s", self.live)
+        report.step("a lease, a recording, its replay and a motor at COM7", self.session)
 
 
 class User:
