@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
+from epg.generator.emit.macros import MACROS
+
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
 PACKAGE = ROOT / "epg"
@@ -96,3 +98,9 @@ def test_the_table_describes_every_folder_of_the_package() -> None:
     described = set(re.findall(r"^\| `epg/((?:generator/)?\w+)` \|", PAGE, re.MULTILINE))
     there = {path.parent.relative_to(PACKAGE).as_posix() for path in PACKAGE.glob("*/__init__.py")} - {"generator"}
     assert described == there | {f"generator/{path.parent.name}" for path in GENERATOR.glob("*/__init__.py")}
+
+
+def test_the_table_of_macros_has_those_that_epg_calls() -> None:
+    table = PAGE.split("| macro | gives | place |")[1].split("\n\n")[0]
+    named = [name for row in table.splitlines() for name in re.findall(r"`(\w+)\(c", row.split(" | ")[0])]
+    assert sorted(named) == MACROS

@@ -9,13 +9,17 @@ from typing import Any
 
 from jinja2 import Environment
 
-from epg.generator.catalog.kind import KindFault
-from epg.generator.diagnostics import Diagnostics, UserError
+from epg.generator.catalog.kind import TEMPLATE, Kind, KindFault
+from epg.generator.diagnostics import Diagnostics, UserError, did_you_mean
 from epg.generator.emit.symbols import component_symbols, constants
-from epg.generator.emit.template import CodeMacro, macro_mistake
+from epg.generator.emit.template import CodeMacro, macro_mistake, macro_span, unused_macros
 from epg.generator.emit.text import Code, identifier
 from epg.generator.emit.views import ComponentView, UseView, ValueView
 from epg.generator.resolve.application import Application, ResolvedComponent
+
+MACROS = """applied check count globals layout message message_size message_type plant_read plant_write prepare probe
+read resets safe safe_level sample start transport write""".split()
+"""All macros of a kind that EPG calls."""
 
 
 class Macros:
@@ -103,10 +107,30 @@ class Macros:
     def _module(self, component: ResolvedComponent) -> Any:
         kind = component.kind.name
         if kind not in self.modules:
-            self.modules[kind] = self.env.get_template(f"components/{kind}/code.c.j2").make_module(
+            module: Any = self.env.get_template(f"components/{kind}/{TEMPLATE}").make_module(
                 {"pi": self.env.globals["pi"]}
             )
+            self._check(component.kind, {name for name, value in vars(module).items() if isinstance(value, CodeMacro)})
+            self.modules[kind] = module
         return self.modules[kind]
+
+    def _check(self, kind: Kind, macros: set[str]) -> None:
+        """Raises UserError if nothing calls one of the ``macros`` of ``kind``, or if it lacks one for safety."""
+        others = macros.difference(MACROS)
+        unused = unused_macros(self.env, f"components/{kind.name}/{TEMPLATE}", others) if others else []
+        problems = Diagnostics()
+        for name in unused:
+            hint = did_you_mean(name, MACROS, "macros")
+            message = f"nothing calls the macro '{name}': EPG has no macro of this name"
+            problems.error("template-wrong", macro_span(kind.folder, name), message, hint=hint)
+        if problems.error_count:
+            raise UserError(problems)
+        needed = [("safe", f"actuator '{port.name}'") for port in kind.ports if port.actuator]
+        needed += [("check", f"fault '{fault.name}'") for fault in kind.faults]
+        for name, what in needed:
+            if name not in macros:
+                message = f"kind '{kind.name}' has no macro '{name}', which its {what} needs"
+                raise macro_mistake(kind.folder, name, message, 1)
 
     def safe_level(self, component: ResolvedComponent, claim: str) -> Code:
         """A C expression, true if the safe level of the claim's pins is high.  The default is ``false``."""

@@ -212,11 +212,24 @@ def macro_mistake(folder: Path, macro: str, message: str, arguments: int) -> Use
 
     ``arguments`` is the number of arguments with which EPG calls the macro.
     """
+    form = f"{{% macro {macro}({', '.join(('c', 'port', 'value')[:arguments])}) %}}"
+    problems = Diagnostics()
+    hint = f"write '{form}'; docs/architecture.md lists all macros"
+    problems.error("template-wrong", macro_span(folder, macro), message, hint=hint)
+    return UserError(problems)
+
+
+def macro_span(folder: Path, macro: str) -> Span:
+    """The line of ``macro`` in the template of the kind in ``folder``; the first line if it has no such macro."""
     path = folder / TEMPLATE
     lines = path.read_text(encoding="utf-8").splitlines()
     numbers = [number for number, line in enumerate(lines, 1) if re.search(rf"\bmacro\s+{macro}\b", line)]
-    form = f"{{% macro {macro}({', '.join(('c', 'port', 'value')[:arguments])}) %}}"
-    problems = Diagnostics()
-    span = Span(str(path), numbers[0] if numbers else 1, 1)
-    problems.error("template-wrong", span, message, hint=f"write '{form}'; docs/architecture.md lists all macros")
-    return UserError(problems)
+    return Span(str(path), numbers[0] if numbers else 1, 1)
+
+
+def unused_macros(env: jinja2.Environment, template: str, macros: Iterable[str]) -> list[str]:
+    """Those of ``macros`` whose names ``template`` itself does not use."""
+    assert env.loader is not None
+    tree = env.parse(env.loader.get_source(env, template)[0])
+    used = {node.name for node in tree.find_all(nodes.Name) if node.ctx == "load"}
+    return sorted(set(macros) - used)
