@@ -201,8 +201,12 @@ def _of_plugins() -> dict[str, Any]:
     from epg.generator.diagnostics import UserError
     from epg.generator.plugins import entry_points, load
 
+    def fits(found: object) -> bool:
+        return all(hasattr(found, name) for name in ("SUMMARY", "add_arguments", "run")) and not isinstance(found, type)
+
+    wanted, entries = "a module with SUMMARY, add_arguments and run", sorted(entry_points("commands").items())
     try:
-        return {name: load(entry) for name, entry in sorted(entry_points("commands").items()) if name not in COMMANDS}
+        return {name: load(entry, wanted, fits) for name, entry in entries if name not in COMMANDS}
     except UserError as problem:
         from epg.cli.report import format_diagnostics
 

@@ -95,6 +95,36 @@ def test_a_broken_plugin_is_named(epg: Run, site: Path) -> None:
     assert epg("--cmake-dir").returncode == epg("--version").returncode == 0
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        (
+            "IMPORTER = TwoRatesImporter()",
+            "IMPORTER = TwoRatesImporter",
+            "must be an object of a class that derives from Importer, and is the class",
+        ),
+        (
+            "IMPORTER = TwoRatesImporter()",
+            "IMPORTER = 1",
+            "must be an object of a class that derives from Importer, and is of type 'int'",
+        ),
+        (
+            "Port(name, name,",
+            'Port(name, "the " + name,',
+            "gives port 'angle' the identifier 'the angle', which is no identifier of C",
+        ),
+    ],
+)
+def test_an_importer_that_epg_cannot_use_is_named(epg: Run, site: Path, old: str, new: str, said: str) -> None:
+    file = site / "epg_two_rates" / "__init__.py"
+    text = file.read_text(encoding="utf-8")
+    assert old in text
+    file.write_text(text.replace(old, new), encoding="utf-8")
+    done = epg("ports", MODEL)
+    assert done.returncode == 1 and "[plugin-broken]" in done.stderr, done.stderr
+    assert "the plug-in 'two_rates' of epg-two-rates " + said in done.stderr
+
+
 def test_a_run_without_plugins_does_not_look_for_them(tmp_path: Path) -> None:
     program = (
         "import sys; from epg.cli.main import main\n"

@@ -15,6 +15,7 @@ from dataclasses import replace
 from functools import cache
 from itertools import groupby, product
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from epg.generator.diagnostics import Diagnostics, did_you_mean
 from epg.generator.documents.source_file import read_any_text
@@ -24,6 +25,9 @@ from epg.generator.importers.importer import FoundModel, Importer, NearlyModel
 from epg.generator.models.folders import source_files
 from epg.generator.models.model import Model
 from epg.generator.source import Span, YamlNode
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 IMPORTERS: dict[str, Importer] = {
     "by_hand": by_hand.IMPORTER,
@@ -137,7 +141,12 @@ def _is_searched(entry: Path) -> bool:
 class _OfPlugin(Importer):
     """An importer of a plug-in.  Its own files count as files of each model: their changes can change the library."""
 
-    def __init__(self, importer: Importer) -> None:
+    def __init__(self, entry: EntryPoint) -> None:
+        from epg.generator.plugins import load
+
+        wanted = "an object of a class that derives from Importer"
+        importer: Importer = load(entry, wanted, lambda found: isinstance(found, Importer))
+        self._entry = entry
         self._importer = importer
         self.rank = importer.rank
         folder = Path(str(sys.modules[type(importer).__module__].__file__)).parent
@@ -161,8 +170,13 @@ class _OfPlugin(Importer):
 
     def _with_files(self, found: FoundModel) -> FoundModel:
         def load(diagnostics: Diagnostics) -> Model | None:
+            from epg.generator.plugins import check_identifiers
+
             model = found.load(diagnostics)
-            return model and replace(model, files=tuple(sorted({*model.files, *self._files})))
+            if model is None:
+                return None
+            check_identifiers(self._entry, model)
+            return replace(model, files=tuple(sorted({*model.files, *self._files})))
 
         return replace(found, load=load)
 
@@ -170,9 +184,9 @@ class _OfPlugin(Importer):
 @cache
 def plugin_importers() -> dict[str, Importer]:
     """The importers of plug-ins by their names, the highest rank first.  Raises UserError for a broken plug-in."""
-    from epg.generator.plugins import entry_points, load
+    from epg.generator.plugins import entry_points
 
-    importers = {name: _OfPlugin(load(entry)) for name, entry in sorted(entry_points("importers").items())}
+    importers = {name: _OfPlugin(entry) for name, entry in sorted(entry_points("importers").items())}
     return dict(sorted(importers.items(), key=lambda item: -item[1].rank))
 
 
