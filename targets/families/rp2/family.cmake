@@ -9,6 +9,12 @@
 function(_epg_rp2_check name result)
   set(${result} FALSE PARENT_SCOPE)
   set(board "${EPG_BOARD_pico_sdk}")
+  if(board STREQUAL "")
+    message(SEND_ERROR "epg_add_target(${name}): its board has no name in the Pico SDK. Add to its board.yaml:
+  sdks: {pico_sdk: pico}
+with the name of its own header in the SDK (boards/<name>.h), or of a similar board's, such as pico or pico2.")
+    return()
+  endif()
   if(NOT TARGET pico_runtime)
     _epg_find_sdk(sdk pico_sdk)
     set(found "")

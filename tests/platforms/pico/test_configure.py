@@ -69,6 +69,22 @@ def test_a_project_without_the_sdk(tmp_path: Path) -> None:
     assert said.count("CMake Error") == 1
 
 
+def test_a_board_without_a_name_in_the_sdk(tmp_path: Path) -> None:
+    board = tmp_path / "targets" / "boards" / "motor_board"
+    board.mkdir(parents=True)
+    text = (ROOT / "targets/boards/rpi_pico/board.yaml").read_text(encoding="utf-8")
+    text = text.replace("board: rpi_pico\n", "board: motor_board\n").replace("{pico_sdk: pico, ", "{")
+    (board / "board.yaml").write_text(text, encoding="utf-8")
+    (tmp_path / "robot.tcf").write_text(
+        "version: 1\nextends: rpi_pico_bare_metal_jiwy.tcf\ntarget: motor_board_bare_metal\n"
+    )
+    robot = target().replace("rpi_pico_bare_metal_jiwy.tcf", "robot.tcf")
+    said = configure(tmp_path, NO_SDK + robot, f"-DEPG_TARGETS_PATH={tmp_path}/targets")
+    assert "epg_add_target(jiwy): its board has no name in the Pico SDK. Add to its board.yaml:" in said
+    assert "sdks: {pico_sdk: pico}" in said
+    assert said.count("CMake Error") == 1
+
+
 def test_a_variable_that_leads_elsewhere(tmp_path: Path) -> None:
     skip_if_missing(arm_gcc)
     said = configure(tmp_path, SDK, PICO_SDK_PATH=str(tmp_path))
