@@ -17,11 +17,17 @@ from typing import cast
 
 import yaml
 
-from epg.generator.correction import correction
+from epg.generator.correction import correction, short
 from epg.generator.dataclass import dataclass
 from epg.generator.diagnostics import Diagnostics, Note
 from epg.generator.documents.text_file import NO_DRAFTS, Drafts, read_text
-from epg.generator.documents.yaml_mistakes import LINE_END, find_mistake, foreign_comment, missing_colon
+from epg.generator.documents.yaml_mistakes import (
+    LINE_END,
+    find_mistake,
+    foreign_comment,
+    missing_colon,
+    text_with_comma,
+)
 from epg.generator.quantity import decimal_comma
 from epg.generator.source import Scalar, Span, YamlNode
 
@@ -226,9 +232,10 @@ class _Builder:
         return False
 
     def _key_without_colon(self, event: yaml.ScalarEvent, top: _Collection | None) -> bool:
-        """Reports two mistakes in braces, in which YAML sees a key without a value; True if there is one of them.
+        """Reports mistakes in braces, in which YAML sees a key without a value; True if there is one of them.
 
-        In ``{period 1 ms}`` all of the text is a key.  In ``{period: 1,5 ms}`` the decimal comma begins a key ``5 ms``.
+        In ``{period 1 ms}`` all of the text is a key.  In ``{period: 1,5 ms}`` the decimal comma begins a key ``5 ms``,
+        and in ``{description: a level, in F}`` the comma begins a key ``in F``.
         """
         start, end = _marks(event)
         if event.value or top is None or not top.flow or top.key is None or top.key_mark is None or top.skip:
@@ -243,6 +250,13 @@ class _Builder:
             hint = decimal_comma(number)
             if hint:
                 self.diagnostics.error("yaml-syntax", whole, f"'{number}' is written with a decimal comma", hint=hint)
+                return True
+            text = text_with_comma(self.lines[key.line - 1][whole.column - 1 :])
+            if text is not None:
+                whole = replace(whole, end=whole.column + len(text))
+                message = f"'{short(text)}' has a comma, which ends a text in braces"
+                hint = correction(text, f'"{text}"', "write it in quotes: {}")
+                self.diagnostics.error("yaml-syntax", whole, message, hint=hint)
                 return True
         mistake = missing_colon(top.key)
         if mistake is not None:

@@ -54,6 +54,19 @@ def missing_colon(text: str) -> tuple[str, str] | None:
     return f"'{short(text)}' has no ':'", hint
 
 
+def text_with_comma(line: str) -> str | None:
+    """The sentence without quotes and with a comma that ``line`` begins with, up to a bracket; None for other text.
+
+    A value of several words is a sentence, for which quotes were meant.  A value of one word, or one that begins with a
+    digit, has a next key after its comma.
+
+    >>> text_with_comma("level 1 of it, in F}")
+    'level 1 of it, in F'
+    """
+    match = re.match(r"([A-Za-z][^\s,:]*\s[^,:]*,[^:]*?)\s*}", re.split(r"[\"'\\\[\]{]|\s#", line)[0])
+    return match[1] if match else None
+
+
 def foreign_comment(text: str) -> tuple[int, str, str] | None:
     """A comment in one line that begins with ``//`` or ``/*``: its index, message and hint; None without one."""
     match = _COMMENT.search(text)
