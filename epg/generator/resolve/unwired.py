@@ -34,8 +34,10 @@ def report_unwired(configuration: Configuration, diagnostics: Diagnostics) -> No
                 hint = _hint(
                     component, {name: found.get((component.name, name), own[name]) for name in own}, configuration
                 )
-            notes = extended_from(component.node)
-            diagnostics.error("unwired", node.span, message, hint=hint, notes=notes, about="pins")
+            span, notes = node.span, extended_from(component.node)
+            if notes and is_own_target_file(span.file) and not is_own_target_file(configuration.tcf):
+                span, notes = notes[-1].span, []  # the line that the user can change
+            diagnostics.error("unwired", span, message, hint=hint, notes=notes, about="pins")
 
 
 def _hint(component: Component, pins: Mapping[str, str], configuration: Configuration) -> str:
@@ -44,9 +46,11 @@ def _hint(component: Component, pins: Mapping[str, str], configuration: Configur
     if any(isinstance(node.value, int) for node in names.values()):
         pins = {name: pin if name in names else configuration.target.board.pin_name(pin) for name, pin in pins.items()}
     text = ", ".join(f"{name}: {pin}" for name, pin in pins.items())
-    sentence = f"write 'pins: {{{text}}}' in '{component.name}', or the pins to which it is wired"
+    file = Path(configuration.tcf).name
+    of_file = f" of {file}" if component.node.origins and not is_own_target_file(configuration.tcf) else ""
+    sentence = f"write 'pins: {{{text}}}' in '{component.name}'{of_file}, or the pins to which it is wired"
     if is_own_target_file(configuration.tcf):
-        return f"{sentence}, in a .tcf of your own that extends {Path(configuration.tcf).name}"
+        return f"{sentence}, in a .tcf of your own that extends {file}"
     path = ("components", component.name, "pins")
     return KeyValue(
         sentence, configuration.tcf, path, {name: int(pin) if pin.isdigit() else pin for name, pin in pins.items()}
