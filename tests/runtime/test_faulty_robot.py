@@ -27,7 +27,7 @@ summary: a switch that closes when something is too hot
 pins: [contact]
 parameters: {pull: {type: string, default: up, description: resistor of the pin}}
 claims: {level: {class: digital_input, output: false, signals: {value: contact}, attributes: {pull: pull}}}
-faults: {too hot: {description: the contact is closed}}
+faults: {too hot: {description: the contact is closed, remedy: let it cool down}}
 """,
     "code.c.j2": """\
 {% macro start(c) %}

@@ -151,7 +151,7 @@ class KindFault:
     name: str
     number: int
     description: str
-    remedy: str  # empty if the kind does not state it
+    remedy: str
     span: Span
 
 
