@@ -96,7 +96,8 @@ def _counts(state: Statistics | TargetState) -> str:
 
 
 def _end(state: Statistics | TargetState) -> str:
-    return "enabled" if state.enabled else f"disabled ({state.fault})"
+    component = f": {state.fault_component}" if state.fault_component else ""
+    return "enabled" if state.enabled else f"disabled ({state.fault}{component})"
 
 
 def _window(result: WindowResult, width: int) -> str:
