@@ -8,19 +8,15 @@ does not know itself, in lists of all that exists, and once while CMake configur
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from epg.generator.diagnostics import Diagnostics, UserError
-from epg.generator.models.c_code import KEYWORDS
 from epg.generator.source import Span
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
-
-    from epg.generator.models.model import Model, Parameter, Port
 
 
 def entry_points(group: str) -> Mapping[str, EntryPoint]:
@@ -38,12 +34,12 @@ def load(entry: EntryPoint, wanted: str, fits: Callable[[Any], object]) -> Any:
     try:
         found = entry.load()
     except Exception as problem:
-        message = f"{_named(entry)} cannot be loaded: {type(problem).__name__}: {problem}"
-        raise _broken(entry, message, f"pip uninstall {_package(entry)}") from problem
+        message = f"{named(entry)} cannot be loaded: {type(problem).__name__}: {problem}"
+        raise broken(entry, message, f"pip uninstall {_package(entry)}") from problem
     if not fits(found):
-        message = f"{_named(entry)} must be {wanted}, and is {_what(found)}"
+        message = f"{named(entry)} must be {wanted}, and is {_what(found)}"
         hint = f"write '{entry.attr or 'NAME'} = {found.__name__}()'" if isinstance(found, type) else ""
-        raise _broken(entry, message, hint or "docs/plugins.md says what each entry point must name")
+        raise broken(entry, message, hint or "docs/plugins.md says what each entry point must name")
     return found
 
 
@@ -54,25 +50,13 @@ def targets_folders() -> list[Path]:
         folder = Path(load(entry, "the path of a folder", lambda found: isinstance(found, (str, Path))))
         if not folder.is_dir():
             message = f"the folder of targets of the plug-in '{name}' does not exist: {folder}"
-            raise _broken(entry, message, "install the plug-in again")
+            raise broken(entry, message, "install the plug-in again")
         folders.append(folder)
     return folders
 
 
-def check_identifiers(entry: EntryPoint, model: Model) -> None:
-    """Raises UserError if the importer of ``entry`` has given a port or parameter a name that C does not allow."""
-    named: list[tuple[str, Port | Parameter]] = [("port", port) for port in (*model.inputs, *model.outputs)]
-    named += [("parameter", parameter) for parameter in model.parameters]
-    for what, each in named:
-        name = each.identifier
-        if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII) or name in KEYWORDS:
-            message = f"{_named(entry)} gives {what} '{each.name}' the identifier '{name}', which is no identifier of C"
-            raise _broken(
-                entry, message, "an importer must report a name that it cannot use, or give it another identifier"
-            )
-
-
-def _broken(entry: EntryPoint, message: str, hint: str) -> UserError:
+def broken(entry: EntryPoint, message: str, hint: str) -> UserError:
+    """The error for a plug-in."""
     diagnostics = Diagnostics()
     diagnostics.error("plugin-broken", Span(entry.value), message, hint=hint)
     return UserError(diagnostics)
@@ -82,7 +66,8 @@ def _package(entry: EntryPoint) -> str:
     return entry.dist.name if entry.dist else entry.module
 
 
-def _named(entry: EntryPoint) -> str:
+def named(entry: EntryPoint) -> str:
+    """The plug-in as messages name it, with its package."""
     return f"the plug-in '{entry.name}' of {_package(entry)}"
 
 

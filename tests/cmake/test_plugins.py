@@ -111,7 +111,7 @@ def test_a_broken_plugin_is_named(epg: Run, site: Path) -> None:
         (
             "Port(name, name,",
             'Port(name, "the " + name,',
-            "gives port 'angle' the identifier 'the angle', which is no identifier of C",
+            "gives 'angle' the identifier 'the angle', which C does not allow",
         ),
     ],
 )

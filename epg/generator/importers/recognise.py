@@ -9,6 +9,7 @@ means would move the robot.
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Iterable
 from dataclasses import replace
@@ -22,8 +23,9 @@ from epg.generator.documents.source_file import read_any_text
 from epg.generator.documents.text_file import is_file
 from epg.generator.importers import by_hand, c_function, cpp_class, fmu, tokens
 from epg.generator.importers.importer import FoundModel, Importer, NearlyModel
+from epg.generator.models.c_code import KEYWORDS
 from epg.generator.models.folders import source_files
-from epg.generator.models.model import Model
+from epg.generator.models.model import Model, Parameter, Port
 from epg.generator.source import Span, YamlNode
 
 if TYPE_CHECKING:
@@ -170,15 +172,23 @@ class _OfPlugin(Importer):
 
     def _with_files(self, found: FoundModel) -> FoundModel:
         def load(diagnostics: Diagnostics) -> Model | None:
-            from epg.generator.plugins import check_identifiers
-
             model = found.load(diagnostics)
-            if model is None:
-                return None
-            check_identifiers(self._entry, model)
-            return replace(model, files=tuple(sorted({*model.files, *self._files})))
+            if model is not None:
+                self._check_identifiers(model)
+            return model and replace(model, files=tuple(sorted({*model.files, *self._files})))
 
         return replace(found, load=load)
+
+    def _check_identifiers(self, model: Model) -> None:
+        """Raises UserError if the importer has given a port or parameter a name that C does not allow."""
+        from epg.generator.plugins import broken, named
+
+        names: list[Port | Parameter] = [*model.inputs, *model.outputs, *model.parameters]
+        for each in names:
+            if not re.fullmatch(r"[A-Za-z_]\w*", each.identifier, re.ASCII) or each.identifier in KEYWORDS:
+                given = f"gives '{each.name}' the identifier '{each.identifier}', which C does not allow"
+                hint = "its importer must report a name that it cannot use, or give it another identifier"
+                raise broken(self._entry, f"{named(self._entry)} {given}", hint)
 
 
 @cache
