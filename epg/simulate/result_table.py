@@ -29,7 +29,7 @@ def _format_system(result: SystemResult) -> str:
     for name, state in result.targets.items():
         end = {"hangs": "hangs", "dead": "dead"}.get(state.state) or _end(state)
         cycles = f"{state.cycles} of {_time(state.period)}"
-        lines.append(f"{name:<{width}}{cycles:>16}  {end:<28}{_counts(state)}".rstrip())
+        lines.append(f"{name:<{width}}{cycles:>16}  {end:<27} {_counts(state)}".rstrip())
     return "\n".join([*lines, *_judged(result.windows, result.checks, result.endings)])
 
 
