@@ -367,7 +367,7 @@ class User:
         gcc.rename(gcc.with_suffix(".away"))
         try:
             return self.refused(
-                "cmake -S examples/jiwy -B build/no_gcc -G Ninja", "EPG: this computer has no C compiler.", GET
+                "cmake -S examples/jiwy -B build/no_gcc -G Ninja", "EPG: this computer has no C compiler 'gcc'", GET
             )
         finally:
             gcc.with_suffix(".away").rename(gcc)
