@@ -337,7 +337,7 @@ def robot(epg: Epg, tmp_path: Path) -> Iterator[Reads]:
     lists.write_text(
         lists.read_text(encoding="utf-8")
         + "epg_add_target(board TCF robot.tcf MODEL model BINDINGS bindings.yaml\n"
-        + "  SET target=firmware communication.middleware=console)\n",
+        + '  SET target=firmware communication.middleware=console "clocks.timers=64 MHz")\n',
         encoding="utf-8",
     )
     lamp = shutil.copytree(ROOT / "targets/components/constant", reads.own / "components/lamp")

@@ -311,7 +311,7 @@ def test_a_message_without_a_port_shows_its_line(jiwy: Project, open_page: Open)
     dialog = page.get_by_role("dialog")
     dialog.wait_for()
     assert "homing: {travel: 110 deg, time: 10 s}" in dialog.locator(".line.here").first.inner_text()
-    assert dialog.locator("pre").count() == 2, "the place and the file that extends it"
+    assert dialog.locator("pre").count() == 1, "no file of the user's extends it"
     page.keyboard.press("Escape")
     dialog.wait_for(state="detached")
 
