@@ -24,7 +24,7 @@ function(_epg_check_compiler)
     find_program(compiler NAMES ${names} NO_CACHE)
     if(NOT compiler)
       _epg_tools_of_project(needed)
-      if(NOT "arm_gcc" IN_LIST needed) # it compiles the images
+      if("c_compiler" IN_LIST needed AND NOT "arm_gcc" IN_LIST needed) # it compiles the images
         set(problem "this computer has no C compiler${wanted}.")
       endif()
     endif()

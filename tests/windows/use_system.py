@@ -18,11 +18,11 @@ from epg.generator.tools.uf2_drives import uf2_drives
 SYNCHRONIZE, STILL_WAITS = 0x100000, 258
 SLEEP = "import time; time.sleep(600)"  # a program that does not end by itself
 PARENT = f"""if True:
-    import signal, subprocess, sys, time
+    import signal, subprocess, sys
     signal.signal(signal.SIGBREAK, signal.SIG_IGN)
     child = subprocess.Popen([sys.executable, "-c", "{SLEEP}"], creationflags=0x200)  # as Ninja starts compilers
     print(child.pid, flush=True)
-    time.sleep(600)  # it does not end by itself
+    child.wait()
 """
 BINDER = f"""if True:
     import os, sys
