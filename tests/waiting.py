@@ -1,12 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The one function by which tests wait for something to happen.
+"""The functions by which tests wait for something to happen.
 
-It ends as soon as that happens.  Its patience is for a computer that also runs other programs: a test that must judge
-how long something takes compares times of the target.
-
->>> found = []
->>> until(lambda: found.append(1) or len(found) > 2)
-True
+Their patience is for a computer that also runs other programs: a test that must judge how long something takes compares
+times of the target.
 """
 
 from __future__ import annotations
@@ -14,26 +10,15 @@ from __future__ import annotations
 import cProfile
 import os
 import select
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
+from tests.doubles.waiting import PATIENCE, soon, until
+
 T = TypeVar("T")
 
-PATIENCE = 30.0  # seconds after which a test gives up
-
-
-def until(happens: Callable[[], T], what: object = "", seconds: float = PATIENCE, pause: float = 0.01) -> T:
-    """Calls ``happens`` every ``pause`` s until its result is true, and returns that result.
-
-    If it does not happen, the error shows ``what``, or the result of ``what`` if that is a function.
-    """
-    end = time.monotonic() + seconds  # the patience of all tests
-    while not (found := happens()):
-        assert time.monotonic() < end, what() if callable(what) else what or "it does not happen"  # patience
-        time.sleep(pause)  # between two looks
-    return found
+__all__ = ["PATIENCE", "calls", "read_until", "soon", "until", "waited"]
 
 
 def waited(process: int) -> float:
@@ -64,12 +49,3 @@ def calls(act: Callable[[], T]) -> tuple[T, int]:
     profile = cProfile.Profile()
     result = profile.runcall(act)
     return result, sum(entry.callcount for entry in profile.getstats())
-
-
-def soon(happens: Callable[[], object], seconds: float, pause: float = 0.01) -> bool:
-    """Returns whether it happens within some seconds."""
-    try:
-        until(happens, seconds=seconds, pause=pause)
-    except AssertionError:
-        return False
-    return True

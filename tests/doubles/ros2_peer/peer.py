@@ -43,7 +43,7 @@ from cyclonedds.util import duration
 
 from tests.doubles.ros2_peer.definitions import ros_type, type_hash
 from tests.doubles.ros2_peer.messages import Gid_, NodeEntitiesInfo_, ParticipantEntitiesInfo_, service_struct
-from tests.waiting import soon
+from tests.doubles.waiting import soon
 
 FOREVER = duration(infinite=True)
 ANYTHING = SampleState.Any | ViewState.Any | InstanceState.Any

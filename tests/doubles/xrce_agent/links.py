@@ -13,7 +13,7 @@ from collections.abc import Hashable
 from pathlib import Path
 from typing import Protocol
 
-from tests.waiting import until
+from tests.doubles.waiting import until
 
 from .framing import AGENT, Deframer, frame
 

@@ -13,7 +13,7 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from tests.waiting import soon
+from tests.doubles.waiting import soon
 
 IDENTITY = 24
 """Bytes of the identity of a sample: GUID and sequence number of its writer.  XRCE has it before a request or reply."""
