@@ -25,9 +25,9 @@ ALONE = 15.0
 """Limit in CPU seconds: ctest runs a costlier file as a test by itself.  A start of pytest takes one second."""
 TOGETHER = 60.0
 """Limit in CPU seconds for files that share a test of ctest, so that no test is the last one for long."""
-CHECK_CPU = 418
+CHECK_CPU = 300
 """Limit in CPU seconds for all files of ``check`` in tests/costs.txt."""
-CHECK_ALL_CPU = 4460
+CHECK_ALL_CPU = 3420
 """Limit in CPU seconds for all files of the target ``check_all``, which also runs those of ``check``."""
 
 
