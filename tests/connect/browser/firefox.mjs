@@ -36,7 +36,7 @@ function watched(tab) {
 // The middle of an element in the window, as soon as it no longer moves. Another element may take its place meanwhile.
 async function middle(selector) {
   for (let before = ""; ; ) {
-    const element = await page.waitForSelector(selector, { timeout: 5000 });
+    const element = await page.waitForSelector(selector, { timeout: 30000 });
     const place = await element.evaluate((each) => {
       each.scrollIntoView({ block: "nearest" });
       const { x, y, width, height } = each.getBoundingClientRect();
