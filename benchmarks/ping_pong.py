@@ -3,8 +3,8 @@
 
     python benchmarks/ping_pong.py [--pings 300] [--flat 5000] [--write]
 
-The middleware is dds; ``xrce_round_trip.py`` measures xrce.  The first row is an echo in Python instead of a target: it
-shows the time that the peer and DDS take.
+The middleware is dds.  The first row is an echo in Python instead of a target: it shows the time that the peer and DDS
+take.
 """
 
 from __future__ import annotations
