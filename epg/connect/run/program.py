@@ -15,7 +15,7 @@ from typing import ClassVar
 from epg.connect.activity import Activity, Outcome
 from epg.connect.build.build_messages import BuildMessage
 from epg.generator.system import here
-from epg.live.udp import is_udp
+from epg.live.udp import PREFIX, is_udp
 
 LONGEST = 86400
 """The longest time in seconds that a program runs: a program that is no ROS 2 node needs a duration."""
@@ -66,9 +66,12 @@ class ProgramRun(Activity):
 
 def command_of(program: Path, port: Path | None) -> tuple[str, ...]:
     """The command that runs ``program`` in real time.  It gives no setpoint, and does not enable the target."""
-    console = () if port is None else (f"--console-pty={port}",)
-    if port == ANY_SOCKET:
-        console = ("--console-udp=127.0.0.1:0",)
+    if port is None:
+        console = []
+    elif is_udp(port):
+        console = [f"--console-udp={str(port).removeprefix(PREFIX)}"]
+    else:
+        console = [f"--console-pty={port}"]
     return (str(program), *console, "--realtime", f"--duration={LONGEST}")
 
 

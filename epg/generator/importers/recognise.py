@@ -9,7 +9,6 @@ means would move the robot.
 
 from __future__ import annotations
 
-import re
 import sys
 from collections.abc import Iterable
 from dataclasses import replace
@@ -25,6 +24,7 @@ from epg.generator.importers import by_hand, c_function, cpp_class, fmu, tokens
 from epg.generator.importers.importer import FoundModel, Importer, NearlyModel
 from epg.generator.models.c_code import KEYWORDS
 from epg.generator.models.folders import source_files
+from epg.generator.models.identifiers import is_identifier
 from epg.generator.models.model import Model, Parameter, Port
 from epg.generator.source import Span, YamlNode
 
@@ -185,7 +185,7 @@ class _OfPlugin(Importer):
 
         names: list[Port | Parameter] = [*model.inputs, *model.outputs, *model.parameters]
         for each in names:
-            if not re.fullmatch(r"[A-Za-z_]\w*", each.identifier, re.ASCII) or each.identifier in KEYWORDS:
+            if not is_identifier(each.identifier) or each.identifier in KEYWORDS:
                 given = f"gives '{each.name}' the identifier '{each.identifier}', which C does not allow"
                 hint = "its importer must report a name that it cannot use, or give it another identifier"
                 raise broken(self._entry, f"{named(self._entry)} {given}", hint)

@@ -36,7 +36,7 @@ def to_identifier(name: str) -> str:
     Characters that C does not allow become ``_``.  A reserved word gets ``_`` at its end.  A name that is reserved for
     the compiler, or that begins with ``EPG_``, gets ``x`` at its start.
     """
-    identifier = re.sub(r"_+", "_", re.sub(r"[^A-Za-z0-9_]", "_", name)) if not _is_identifier(name) else name
+    identifier = re.sub(r"_+", "_", re.sub(r"[^A-Za-z0-9_]", "_", name)) if not is_identifier(name) else name
     if not identifier or identifier[0].isdigit():
         identifier = f"_{identifier}"
     if re.match(r"__|_[A-Z]|EPG_", identifier):  # the compiler reserves the first two; EPG's headers define EPG_ macros
@@ -69,5 +69,6 @@ def unique_identifiers(names: Iterable[str]) -> list[str]:
     return result
 
 
-def _is_identifier(name: str) -> bool:
+def is_identifier(name: str) -> bool:
+    """True if C allows these characters in a name.  A reserved word is one, too: see :func:`is_reserved`."""
     return re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name) is not None

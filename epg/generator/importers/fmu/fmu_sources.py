@@ -25,6 +25,7 @@ from epg.generator.importers.fmu.fmu_files import SOURCES, FmuFiles
 from epg.generator.importers.fmu.fmu_reader import FMI_HEADERS, Reader, also
 from epg.generator.models.c_code import CFile, parse_code
 from epg.generator.models.conditions import NO, YES
+from epg.generator.models.identifiers import is_identifier
 from epg.generator.models.link import Linked
 from epg.generator.models.preprocessor import ConditionalSection, condition_at, deciding_macros
 from epg.generator.source import Span
@@ -32,7 +33,6 @@ from epg.generator.source import Span
 BUILD = f"{SOURCES}/buildDescription.xml"
 MAX_SOURCES = 2000
 _PREFIX = re.compile(r"FMI[23]_(?:OVERRIDE_|ACTUAL_)?FUNCTION_PREFIX")
-_IDENTIFIER = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -328,10 +328,6 @@ def _define(name: str, item: Element, definitions: dict[str, str], diagnostics: 
         message = f"'{name}' has two values, '{definitions[name][:40]}' and '{value[:40]}'"
         hint = "EPG compiles all files of an FMU with the same macros"
         diagnostics.error("fmu-definition", item.span, message, hint=hint)
-
-
-def is_identifier(name: str) -> bool:
-    return _IDENTIFIER.fullmatch(name) is not None
 
 
 def is_definition(value: str) -> bool:
