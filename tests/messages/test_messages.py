@@ -127,12 +127,23 @@ def test_hashes_are_those_of_the_runtime_and_of_ros2() -> None:
     assert type_hash(loaded("sensor_msgs/msg/Imu"), "sensor_msgs/msg/Imu") == imu
 
 
-def test_the_hash_of_a_signed_byte(tmp_path: Path) -> None:
-    folder = tmp_path / "std_msgs" / "msg"
-    folder.mkdir(parents=True)
-    (folder / "Int8.msg").write_text("int8 data\n", encoding="ascii")
-    int8 = "RIHS01_26525065a403d972cb672f0777e333f0c799ad444ae5fcd79e43d1e73bd0f440"  # Jazzy's
-    assert type_hash(loaded("std_msgs/msg/Int8", folders=(tmp_path,)), "std_msgs/msg/Int8") == int8
+@pytest.mark.parametrize(
+    ("name", "text", "hash"),
+    [
+        ("std_msgs/msg/Int8", "int8 data", "26525065a403d972cb672f0777e333f0c799ad444ae5fcd79e43d1e73bd0f440"),
+        (
+            "px4_msgs/msg/CollisionConstraints",
+            "uint64 timestamp\nfloat32[2] original_setpoint\nfloat32[2] adapted_setpoint",
+            "9f577d2403521a50ad0dc4bdaeb0e9070bd4400b652c3c327b93e384a0ce08b8",
+        ),
+    ],
+    ids=["int8", "uint64 and arrays"],
+)
+def test_hashes_that_rosidl_has_written(name: str, text: str, hash: str, tmp_path: Path) -> None:
+    file = tmp_path / f"{name}.msg"
+    file.parent.mkdir(parents=True)
+    file.write_text(f"{text}\n", encoding="ascii")
+    assert type_hash(loaded(name, folders=(tmp_path,)), name) == f"RIHS01_{hash}"
 
 
 def test_hashes_of_all_messages_where_ros2_is_sourced() -> None:

@@ -54,13 +54,13 @@ def main(arguments: list[str]) -> int:
     lost = [one for one in chosen if one.kind == "noticed" and states.get(one) == NONE]
     for one in lost:
         print(f"lost: {one.file}: no test notices this any more\n  - {one.before}\n  + {one.after}")
-    late = len(chosen) - len(states)
+    late = Counter(one.kind for one in chosen if one not in states)
     if not options.check:
         record.write([*kept, *tried])
-        if not late and not options.mend:
+        if not late["noticed"] and not options.mend:  # the others are tried as far as there is time
             record.renewed()
     print(record.summary([*kept, *tried], record.age()))
-    print(f"{late} were late" if late else "all were tried")
+    print("late: " + (", ".join(f"{count} {kind}" for kind, count in sorted(late.items())) or "none"))
     return 1 if lost else 0
 
 

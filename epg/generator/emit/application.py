@@ -169,6 +169,7 @@ class Emitter:
         ]
 
     def _part(self, constant: Code, component: ResolvedComponent) -> ComponentCode:
+        drives = any(port.actuator for port in component.kind.ports)
         return ComponentCode(
             component=self.macros.views[component.name],
             constant=constant,
@@ -176,7 +177,7 @@ class Emitter:
             start=_indented(self.macros.macro(component, "start")),
             sample=_indented(self.macros.macro(component, "sample")),
             check=self.macros.macro(component, "check").strip(),
-            safe=_indented(self.macros.macro(component, "safe")),
+            safe=_indented((self.macros.statement if drives else self.macros.macro)(component, "safe")),
             probes={point: _indented(self.macros.macro(component, "probe", point)) for point in POINTS},
         )
 
