@@ -22,6 +22,7 @@ from epg.connect.projects import Job
 from epg.generator.catalog.catalog import load_catalog
 from epg.generator.data import targets_roots
 from epg.generator.diagnostics import Diagnostics
+from epg.generator.system import here
 from epg.generator.tools.tools import load_tools
 from tests.connect.builds import job_of, processes, run
 from tests.connect.robots import ROOT, new_project
@@ -305,6 +306,19 @@ def test_a_cancelled_build_leaves_no_process_and_goes_on_later(
     assert [product["path"] for product in state["products"]] == [str(folder / "jiwy_host")]
     if generator == "Unix Makefiles":
         assert (state["done"], state["total"]) == (100, 100), "Make counts in hundredths"
+
+
+def test_programs_are_found_without_proc(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As on macOS: also a program in a process group of its own."""
+    monkeypatch.setattr(sys, "platform", "darwin")
+    script = "import os, signal\nif os.fork() == 0:\n    os.setpgid(0, 0)\n    os.write(1, b'.')\nsignal.pause()"
+    group = here.start([sys.executable, "-c", script], tmp_path, os.environ, modest=False, bound=False)
+    assert group.process.stdout is not None and group.process.stdout.read(1) == b"."
+    group.process.kill()
+    group.process.wait()
+    assert group.is_running()
+    group.kill()
+    until(lambda: not group.is_running())
 
 
 def test_cancelling_before_the_start_and_twice(robot: Path) -> None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from pathlib import Path, PureWindowsPath
 from typing import Any
@@ -225,3 +226,23 @@ def test_ports_of_ioreg() -> None:
     port = UsbPort(Path("/dev/cu.usbmodem1101"), "Pico", "2e8a", "E6614103E7174A21")
     assert list(darwin.ports_of(IOREG)) == [port]
     assert list(darwin.ports_of("")) == []
+
+
+def test_a_port_behind_a_hub_is_listed_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A program with the name of ``ioreg`` that knows a hub, and then its device once more."""
+    (tmp_path / "ioreg").write_text(f"#!/bin/sh\ncat <<'END'\n{IOREG}{IOREG}END\n")
+    (tmp_path / "ioreg").chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    path = Path("/dev/cu.usbmodem1101")
+    assert list(darwin.list_ports()) == [darwin.usb_port(path)] == [UsbPort(path, "Pico", "2e8a", "E6614103E7174A21")]
+
+
+def test_rates_of_a_terminal_of_macos() -> None:
+    """A rate that POSIX does not have is set by another request, which a terminal without wires refuses."""
+    ours, theirs = os.openpty()
+    name = Path(os.ttyname(theirs))
+    darwin.open_device(name, 115200).close()
+    with pytest.raises(PortError, match="have no rate of 12345"):
+        darwin.open_device(name, 12345)
+    os.close(ours)
+    os.close(theirs)

@@ -153,7 +153,9 @@ class PosixSession:
             os.killpg(self.process.pid, signal.SIGKILL)
 
     def _members(self) -> list[int]:
-        """The running processes of the session.  Empty on systems other than Linux."""
+        """The running processes of the session."""
+        if sys.platform == "darwin":  # which has no /proc
+            return [process for process in _running() if _session_of(process) == self.process.pid]
         members = []
         for entry in Path("/proc").glob("[0-9]*"):
             try:
@@ -163,6 +165,21 @@ class PosixSession:
             if fields[0] != "Z" and fields[3] == str(self.process.pid):  # state; session
                 members.append(int(entry.name))
         return members
+
+
+def _running() -> Iterator[int]:
+    import subprocess
+
+    listed = subprocess.run(["ps", "-axo", "pid=,stat="], capture_output=True, text=True, check=False)
+    yield from (int(line.split()[0]) for line in listed.stdout.splitlines() if "Z" not in line)
+
+
+def _session_of(process: int) -> int:
+    """The process that leads the session of a process; -1 if the process has ended."""
+    try:
+        return os.getsid(process)
+    except OSError:
+        return -1
 
 
 def start(

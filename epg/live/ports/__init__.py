@@ -58,7 +58,7 @@ def system() -> PortsOfSystem:
     try:
         return cast(PortsOfSystem, importlib.import_module(f"epg.live.ports.{sys.platform}"))
     except ImportError as error:
-        raise PortError("EPG does not use ports on this system", "start it on Linux or Windows") from error
+        raise PortError("EPG does not use ports on this system", "start it on Linux, macOS or Windows") from error
 
 
 def gone(path: Path) -> PortError:

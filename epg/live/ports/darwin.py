@@ -3,20 +3,38 @@
 
 from __future__ import annotations
 
+import fcntl
 import re
+import struct
 import subprocess
+import termios
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
-from epg.live.ports import UsbPort
+from epg.live.ports import UsbPort, wrong_rate
 from epg.live.ports.posix import PosixPort
 
+_IOSSIOSPEED = 0x80085402  # _IOW('T', 2, speed_t) of IOKit
 _NODE = re.compile(r"^(?P<depth>[ |]*)\+-o (?P<name>.*?)(?:@\S+)?  <")
 _PROPERTY = re.compile(r'^[ |]*"(?P<name>[^"]+)" = (?P<value>.*?)\s*$')
 
 
+class MacPort(PosixPort):
+    """A port that has other rates than those of POSIX, which end at 230400."""
+
+    def _set(self, attributes: list[Any], baud: int) -> None:
+        posix = hasattr(termios, f"B{baud}")
+        super()._set(attributes, baud if posix else 9600)
+        if not posix:
+            try:
+                fcntl.ioctl(self._file, _IOSSIOSPEED, struct.pack("L", baud))
+            except OSError as error:
+                raise wrong_rate(baud) from error
+
+
 def open_device(path: Path, baud: int) -> PosixPort:
-    return PosixPort(path, baud, program_with, "/dev/cu.usbmodem1101")
+    return MacPort(path, baud, program_with, "/dev/cu.usbmodem1101")
 
 
 def list_ports() -> Iterator[UsbPort]:
@@ -25,7 +43,7 @@ def list_ports() -> Iterator[UsbPort]:
         done = subprocess.run(command, capture_output=True, text=True, timeout=10, check=False)
     except (OSError, subprocess.SubprocessError):
         return
-    yield from ports_of(done.stdout)
+    yield from {port.path: port for port in ports_of(done.stdout)}.values()  # ports behind a hub come twice
 
 
 def usb_port(path: Path) -> UsbPort:

@@ -12,6 +12,7 @@ import termios
 import tty
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from epg.generator.install import remedy
 from epg.live.ports import PortError, full, gone, missing, wrong_rate
@@ -41,15 +42,18 @@ class PosixPort:
         except OSError as error:
             raise self._taken() from error
         fcntl.ioctl(self._file, termios.TIOCEXCL)
-        speed = getattr(termios, f"B{baud}", None)
-        if speed is None:
-            raise wrong_rate(baud)
         tty.setraw(self._file, termios.TCSANOW)
         attributes = termios.tcgetattr(self._file)
         attributes[2] |= termios.CLOCAL | termios.CREAD
+        self._set(attributes, baud)
+        termios.tcflush(self._file, termios.TCIFLUSH)
+
+    def _set(self, attributes: list[Any], baud: int) -> None:
+        speed = getattr(termios, f"B{baud}", None)
+        if speed is None:
+            raise wrong_rate(baud)
         attributes[4] = attributes[5] = speed
         termios.tcsetattr(self._file, termios.TCSANOW, attributes)
-        termios.tcflush(self._file, termios.TCIFLUSH)
 
     def read(self, seconds: float) -> bytes:
         if not select.select([self._file], [], [], seconds)[0]:
