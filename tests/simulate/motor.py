@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
+from epg.generator.system import here
 from tests.platforms.host.program import PROGRAMS, include_folders, platform_sources
 
 
@@ -15,9 +15,9 @@ def compile_motor(output: Path, *defines: str) -> Path:
     """The motor of the host platform's own tests, compiled with ``defines``."""
     compiler = shutil.which("gcc") or shutil.which("cc")
     assert compiler is not None, "a C compiler is needed"
-    sources = [*platform_sources(system="linux" if sys.platform == "linux" else "elsewhere"), PROGRAMS / "motor.c"]
-    command = [compiler, "-std=c11", "-O1", "-DEPG_HOST_TARGET=epg_host_application"]
+    sources = [*platform_sources(system=here.NAME), PROGRAMS / "motor.c"]
+    command = [compiler, "-std=c11", "-O1", "-DEPG_HOST_TARGET=epg_host_application", "-D_DARWIN_C_SOURCE"]
     command += [f"-D{define}" for define in defines]
-    command += [f"-I{folder}" for folder in include_folders()]
+    command += [f"-I{folder}" for folder in include_folders(here.NAME)]
     subprocess.run([*command, *map(str, sources), "-pthread", "-lm", "-o", str(output)], check=True)
     return output

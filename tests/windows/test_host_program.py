@@ -24,13 +24,16 @@ from tests.platforms.host.program import PROGRAMS, WARNINGS, include_folders, pl
 from tests.windows.computer import GCC, MISSING, Computer, is_here
 
 needs_wine = pytest.mark.skipif(not is_here(), reason=MISSING)
+MACH_O = b"\xcf\xfa\xed\xfe"
+"""The first bytes of a program of macOS."""
+
 needs_zig = pytest.mark.skipif(
     importlib.util.find_spec("ziglang") is None, reason="ziglang is not installed: pip install ziglang"
 )
 
 
 def options(system: str) -> list[str]:
-    defines = ["-DEPG_HOST_TARGET=epg_host_application", "-D_POSIX_C_SOURCE=200809L"]
+    defines = ["-DEPG_HOST_TARGET=epg_host_application", "-D_POSIX_C_SOURCE=200809L", "-D_DARWIN_C_SOURCE"]
     return ["-std=c11", *WARNINGS, *defines, *(f"-I{folder}" for folder in include_folders(system))]
 
 
@@ -123,10 +126,32 @@ def test_there_is_no_pseudo_terminal(computer: Computer, program: Path) -> None:
     ]
 
 
+MACHINES = pytest.mark.parametrize("machine", ["aarch64-macos", "x86_64-macos"])
+
+
 @needs_zig
-@pytest.mark.parametrize("machine", ["aarch64-macos", "x86_64-macos"])
+@MACHINES
 def test_it_compiles_for_macos(machine: str, tmp_path: Path) -> None:
-    sources = [PROGRAMS / "motor.c", *platform_sources(system="elsewhere")]
-    command = [sys.executable, "-m", "ziglang", "cc", "-target", machine, *options("elsewhere"), *map(str, sources)]
+    """All of it: real time, the console on standard input, by a pseudo-terminal and by UDP, and agents."""
+    sources = [PROGRAMS / "motor.c", *platform_sources(system="macos")]
+    command = [sys.executable, "-m", "ziglang", "cc", "-target", machine, *options("macos"), *map(str, sources)]
     done = subprocess.run([*command, "-o", str(tmp_path / "motor")], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
+    assert (tmp_path / "motor").read_bytes()[:4] == MACH_O
+
+
+@needs_zig
+@MACHINES
+def test_jiwy_is_built_for_macos(machine: str, tmp_path: Path) -> None:
+    """By CMake: the generated code, the runtime, the console and the host, whose warnings are errors."""
+    tools = {}
+    for name, tool in {"C_COMPILER": f"cc -target {machine}", "AR": "ar", "RANLIB": "ranlib"}.items():
+        tools[name] = tmp_path / name
+        tools[name].write_text(f'#!/bin/sh\nexec "{sys.executable}" -m ziglang {tool} "$@"\n')
+        tools[name].chmod(0o755)
+    settings = [f"-DCMAKE_{name}={path}" for name, path in tools.items()]
+    settings += ["-DCMAKE_SYSTEM_NAME=Darwin", "-DCMAKE_C_FLAGS=-Werror", f"-DPython3_EXECUTABLE={sys.executable}"]
+    for command in (["-S", str(ROOT / "examples/jiwy"), "-B", str(tmp_path), *settings], ["--build", str(tmp_path)]):
+        done = subprocess.run(["cmake", *command], capture_output=True, text=True, check=False)
+        assert done.returncode == 0 and "warning:" not in done.stderr, done.stdout + done.stderr
+    assert (tmp_path / "jiwy_host").read_bytes()[:4] == MACH_O

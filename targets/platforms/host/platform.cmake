@@ -7,11 +7,11 @@ function(_epg_host_library)
     return()
   endif()
   set(folder "${CMAKE_CURRENT_FUNCTION_LIST_DIR}")
-  set(systems posix realtime linux) # real time, consoles and agents
+  set(systems posix realtime linux)
   if(WIN32)
     set(systems realtime windows)
-  elseif(NOT CMAKE_SYSTEM_NAME STREQUAL "Linux")
-    set(systems posix elsewhere)
+  elseif(CMAKE_SYSTEM_NAME STREQUAL "Darwin")
+    set(systems posix realtime macos)
   endif()
   list(TRANSFORM systems PREPEND "${folder}/src/*/" OUTPUT_VARIABLE parts)
   list(TRANSFORM parts APPEND "/*.c" OUTPUT_VARIABLE patterns)
@@ -25,22 +25,22 @@ function(_epg_host_library)
   # A static library, unlike the port layers of microcontrollers, because its sources need no settings of an SDK.
   add_library(epg_host STATIC EXCLUDE_FROM_ALL ${sources})
   target_include_directories(epg_host PUBLIC "${folder}/include" PRIVATE "${folder}/src" "${console}")
-  list(GET systems -1 system)
-  target_include_directories(epg_host PRIVATE "${folder}/src/links/realtime" "${folder}/src/links/${system}")
+  list(TRANSFORM systems PREPEND "${folder}/src/links/")
+  target_include_directories(epg_host PRIVATE ${systems})
   target_link_libraries(epg_host PUBLIC epg_runtime "$<$<PLATFORM_ID:Linux>:-pthread>" $<$<NOT:$<BOOL:${WIN32}>>:m>
     $<$<BOOL:${WIN32}>:ws2_32> $<$<BOOL:${WIN32}>:winmm>)
   target_link_libraries(epg_runtime INTERFACE epg_host) # the runtime calls the port layer
   _epg_compiler_options(epg_host)
-  target_compile_definitions(epg_host PRIVATE _POSIX_C_SOURCE=200809L)
+  target_compile_definitions(epg_host PRIVATE _POSIX_C_SOURCE=200809L $<$<PLATFORM_ID:Darwin>:_DARWIN_C_SOURCE>)
   add_library(EPG::host ALIAS epg_host)
 endfunction()
 
-# Called by epg_add_target(): links the port layer to target <name>.  Reports an error if the project is for a
-# microcontroller.
+# Called by epg_add_target(): links the port layer to target <name>.  Reports an error if the project is for another
+# system.
 function(_epg_host_target name)
-  if(CMAKE_SYSTEM_NAME STREQUAL "PICO" OR NOT (UNIX OR WIN32)) # the Pico SDK includes Platform/UnixPaths, which sets UNIX
+  if(NOT CMAKE_SYSTEM_NAME MATCHES "^(Linux|Darwin|Windows)$")
     set_property(TARGET ${name} PROPERTY EPG_FAILED TRUE) # its executables need not report the same error again
-    message(SEND_ERROR "epg_add_target(${name}): its target is 'host', a program for a computer, and this project is compiled for a microcontroller (CMAKE_SYSTEM_NAME is ${CMAKE_SYSTEM_NAME}).
+    message(SEND_ERROR "epg_add_target(${name}): its target is 'host', a program for Linux, macOS or Windows, and this project is compiled for another system, such as a microcontroller (CMAKE_SYSTEM_NAME is ${CMAKE_SYSTEM_NAME}).
 Choose the .tcf of a target for the board: 'epg targets' lists them. If there is none, write 'target: firmware' in the .tcf: your program then calls the control cycle and has the drivers (docs/any-firmware.md). For the controller alone, without pins and topics:
   epg_add_model(${name} MODEL <folder>)")
     return()

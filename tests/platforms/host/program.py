@@ -20,6 +20,12 @@ RUNTIME = TARGETS / "runtime"
 CONSOLE = TARGETS / "middlewares" / "console"
 SCAN = [CONSOLE / "scan.c", CONSOLE / "frame.c"]
 PROGRAMS = Path(__file__).resolve().parent / "programs"
+SYSTEMS = {
+    "linux": ("posix", "realtime", "linux"),
+    "macos": ("posix", "realtime", "macos"),
+    "windows": ("realtime", "windows"),
+}
+"""System -> the folders of its sources."""
 
 WARNINGS = ["-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Wshadow", "-pedantic", "-Werror"]
 ADDRESS_SANITIZER = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-omit-frame-pointer"]
@@ -44,17 +50,16 @@ def compile_program(
 
 def include_folders(system: str = "linux") -> list[Path]:
     """The folders of headers of the runtime and the host platform, for a program of ``system``."""
-    links = HOST / "src/links"
-    return [RUNTIME / "include", HOST / "include", HOST / "src", CONSOLE, links / "realtime", links / system]
+    links = [HOST / "src/links" / name for name in SYSTEMS[system]]
+    return [RUNTIME / "include", HOST / "include", HOST / "src", CONSOLE, *links]
 
 
 def platform_sources(*, main: bool = True, system: str = "linux") -> list[Path]:
     """All sources of the runtime and the host platform, as the build system would compile them."""
     parts = ("control", "communication", "model")
     folders = [RUNTIME / "src" / part for part in parts]
-    systems = {"linux": ["posix", "realtime"], "windows": ["realtime"], "elsewhere": ["posix"]}[system] + [system]
     folders += [*sorted((HOST / "src").iterdir())]
-    folders += [folder for name in systems for folder in sorted((HOST / "src").glob(f"*/{name}"))]
+    folders += [folder for name in SYSTEMS[system] for folder in sorted((HOST / "src").glob(f"*/{name}"))]
     sources = [source for folder in folders for source in sorted(folder.glob("*.c"))] + SCAN
     return [source for source in sources if main or source.name != "main.c"]
 

@@ -73,7 +73,7 @@ def test_the_number_of_a_start(tmp_path: Path) -> None:
     """Another one for each run in real time; the same one for all runs in simulated time."""
     sources = [
         PROGRAMS / "boot_id.c",
-        *(HOST / "src" / "port" / name for name in ("clock.c", "posix/monotonic.c", "linux/system.c")),
+        *(HOST / "src/port" / f"{name}.c" for name in ("clock", "posix/monotonic", "posix/random", "linux/system")),
     ]
     program = compile_program(tmp_path / "boot_id", sources)
 

@@ -272,20 +272,6 @@ def test_without_plant_sensors_stand_still(tmp_path: Path) -> None:
     assert [value for _, topic, value in run.topics if topic == "motor_position"] == [0.0] * 4
 
 
-def test_simulated_time_needs_no_linux(tmp_path: Path) -> None:
-    """The sources as on a system without Linux: simulated time works; real time reports that it needs Linux."""
-    sources = [PROGRAMS / "motor.c", *platform_sources(system="elsewhere")]
-    flags = ["-U__linux__", "-U__linux", "-Ulinux", "-D_POSIX_C_SOURCE=200809L"]
-    program = Program(compile_program(tmp_path / "motor", sources, sanitize=flags))
-    assert program.run_good(tmp_path / "run", 0.1).statistics["cycles"] == 100
-    for options in ((), ("--console-udp", "7000")):
-        run = program.run(tmp_path / "real", 0.1, None, "--realtime", *options)
-        assert run.status == 1
-        assert run.stderr == (
-            "error: real time on the host needs Linux\nhint: remove --realtime to run in simulated time\n"
-        )
-
-
 def test_disabled_at_start(tmp_path: Path) -> None:
     program = Program(
         compile_program(

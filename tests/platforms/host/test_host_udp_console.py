@@ -28,9 +28,9 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
         links / "blake2s.c",
         links / "udp_address.c",
         *(links / "realtime").glob("udp_*.c"),
-        links / "linux/udp_key.c",
+        links / "posix/udp_key.c",
     ]
-    includes = [HOST / "src", links / "realtime", links / "linux", PROGRAMS, CONSOLE, BENCH]
+    includes = [HOST / "src", links / "realtime", links / "posix", PROGRAMS, CONSOLE, BENCH]
     return compile_program(tmp_path_factory.mktemp("udp_console") / "tests", sources, includes=includes)
 
 

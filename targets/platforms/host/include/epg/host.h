@@ -7,7 +7,7 @@
  * of their signals: encoder counts, PWM levels, pin levels.  Generated functions connect them to the plant model.
  *
  * A run is in simulated or in real time.  Simulated time has one thread, does not wait, and gives the same result every
- * time; a control cycle takes no simulated time.  Real time needs Linux: a control thread wakes up at each tick.
+ * time; a control cycle takes no simulated time.  In real time, a control thread wakes up at each tick.
  *
  * An executable has EPG's main(), which calls epg_host_main(), or a main() of the user, which calls the generated
  * `<name>_start()` and `<name>_stop()`.

@@ -3,7 +3,7 @@
  * @file
  * The link to the agent of a middleware: by UDP, or by a terminal such as /dev/ttyUSB0.
  *
- * It needs Linux or Windows, like real time.  Only one thread may use a link.  No function waits.
+ * Only one thread may use a link.  No function waits.
  */
 #ifndef EPG_HOST_LINK_H
 #define EPG_HOST_LINK_H

@@ -5,7 +5,7 @@
  *
  * A pseudo-terminal looks to other programs like the serial port of a board.
  *
- * It needs Linux or Windows, like real time.  Windows has no pseudo-terminals.  Only one thread may use a terminal.
+ * Windows has no pseudo-terminals.  Only one thread may use a terminal.
  */
 #ifndef EPG_HOST_TERMINAL_H
 #define EPG_HOST_TERMINAL_H
@@ -20,6 +20,7 @@ typedef struct epg_host_terminal {
     int input;
     int output;
     bool own;         /**< true: a pseudo-terminal; false: standard input and output */
+    bool opened;      /**< at the last look, a program had the other end of the pseudo-terminal open */
     const char *path; /**< symbolic link to the pseudo-terminal, which is removed at the end; NULL: none */
     bool lost;        /**< the reader of the output has gone */
     uint64_t end_ns;  /**< monotonic time at which standard input ended; 0: it has not ended */

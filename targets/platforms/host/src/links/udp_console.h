@@ -9,7 +9,7 @@
  * On an address that other computers can reach, a user must be a program with the console's key.
  * docs/live-protocol.md defines the datagrams.
  *
- * It needs Linux or Windows, like real time.  Only one thread may use it.  No function waits.
+ * Only one thread may use it.  No function waits.
  */
 #ifndef EPG_HOST_UDP_CONSOLE_H
 #define EPG_HOST_UDP_CONSOLE_H

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Systems on which EPG has only simulated time, in which nothing waits.
+ * Programs in which all time is simulated, so that nothing waits.
  */
 #include "port/clock.h"
 

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Sleep and random numbers of Linux.
+ * Sleep of Linux.
  */
 #define _POSIX_C_SOURCE 200809L
 
-#include <sys/random.h>
 #include <time.h>
 
 #include "port/clock.h"
@@ -14,10 +13,4 @@ void epg_host_sleep_until(uint64_t time_ns)
 {
     const struct timespec until = {.tv_sec = (time_t)(time_ns / 1000000000U), .tv_nsec = (long)(time_ns % 1000000000U)};
     (void)clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, NULL);
-}
-
-uint32_t epg_host_random(void)
-{
-    uint32_t number;
-    return getrandom(&number, sizeof number, 0) == (ssize_t)sizeof number ? number : 0U;
 }

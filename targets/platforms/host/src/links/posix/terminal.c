@@ -25,20 +25,47 @@ enum {
     GRACE_NS = 200 * 1000 * 1000 /* from the end of input to the end of the run */
 };
 
-/** The events of `events` that are ready at `file`.  poll() adds POLLHUP and POLLERR. */
+/**
+ * The events of `events` that are ready at `file`.  poll() adds POLLHUP and POLLERR.  macOS has no poll() for /dev/null
+ * and other devices that never wait.
+ */
 static short ready(int file, short events)
 {
     struct pollfd entry = {.fd = file, .events = events};
-    return poll(&entry, 1, 0) > 0 ? entry.revents : 0;
+    const int count = poll(&entry, 1, 0);
+    return count <= 0 ? 0 : (entry.revents & POLLNVAL) != 0 ? events : entry.revents;
+}
+
+/**
+ * Makes the terminal transfer plain bytes, as USB does: no echo, no editing of lines, no signals.  It is opened and
+ * closed once; from then on a poll of our end reports that no program has the other end open (POLLHUP).
+ */
+static bool make_raw(const char *name)
+{
+    struct termios settings;
+    const int file = open(name, O_RDWR | O_NOCTTY);
+    if (file < 0) {
+        return false;
+    }
+    const bool good = tcgetattr(file, &settings) == 0;
+    cfmakeraw(&settings);
+    const bool set = good && tcsetattr(file, TCSANOW, &settings) == 0;
+    close(file);
+    return set;
 }
 
 static bool connected(void *context)
 {
-    const epg_host_terminal_t *terminal = context;
+    epg_host_terminal_t *terminal = context;
     if (!terminal->own) {
         return !terminal->lost;
     }
-    return (ready(terminal->input, POLLIN) & POLLHUP) == 0; /* a program has the other end open */
+    const bool before = terminal->opened;
+    terminal->opened = (ready(terminal->input, POLLIN) & POLLHUP) == 0; /* a program has the other end open */
+    if (terminal->opened && !before) {
+        (void)make_raw(ptsname(terminal->input)); /* macOS forgets it when the other end is closed */
+    }
+    return terminal->opened;
 }
 
 static size_t read_bytes(void *context, void *data, size_t size)
@@ -67,7 +94,7 @@ static size_t write_some(epg_host_terminal_t *terminal, const char *data, size_t
     return count > 0 ? (size_t)count : 0;
 }
 
-/** Writes to standard output, without the carriage returns that the console sends: Linux ends a line with a newline. */
+/** Writes to standard output, without the carriage returns that the console sends: POSIX ends a line with a newline. */
 static size_t write_lines(void *context, const void *data, size_t size)
 {
     epg_host_terminal_t *terminal = context;
@@ -109,24 +136,6 @@ void epg_host_terminal_standard(epg_host_terminal_t *terminal)
         .output = STDOUT_FILENO,
     };
     signal(SIGPIPE, SIG_IGN); /* the program must go on, to make its outputs safe, when the reader has gone */
-}
-
-/**
- * Makes the terminal transfer plain bytes, as USB does: no echo, no editing of lines, no signals.  It is opened and
- * closed once; from then on a poll of our end reports that no program has the other end open (POLLHUP).
- */
-static bool make_raw(const char *name)
-{
-    struct termios settings;
-    const int file = open(name, O_RDWR | O_NOCTTY);
-    if (file < 0) {
-        return false;
-    }
-    const bool good = tcgetattr(file, &settings) == 0;
-    cfmakeraw(&settings);
-    const bool set = good && tcsetattr(file, TCSANOW, &settings) == 0;
-    close(file);
-    return set;
 }
 
 /** Makes `path` a symbolic link to the terminal `name`.  Replaces a link that an earlier run has left. */

@@ -3,7 +3,7 @@
  * @file
  * The file with the key of the console by UDP.
  */
-#define _POSIX_C_SOURCE 200809L
+#define _DEFAULT_SOURCE /* getentropy() */
 
 #include "links/realtime/udp_key.h"
 
@@ -49,6 +49,6 @@ bool epg_host_udp_key_load(const char *path, unsigned char key[EPG_HOST_UDP_KEY]
 
 void epg_host_udp_random(void *data, size_t size)
 {
-    while (getrandom(data, size, 0) != (ssize_t)size) { /* a signal came before the system had a first number */
+    while (getentropy(data, size) != 0) { /* a signal came before the system had a first number */
     }
 }

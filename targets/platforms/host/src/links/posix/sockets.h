@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Sockets of Linux.  No function waits.
+ * Sockets of POSIX.  No function waits.
  */
 #ifndef EPG_HOST_SOCKETS_H
 #define EPG_HOST_SOCKETS_H
@@ -38,13 +38,20 @@ static inline bool epg_host_socket_connect(int file, const struct addrinfo *addr
 /** Sends a datagram; `size` is 0 if the socket is connected. */
 static inline long epg_host_socket_send(int file, const void *data, size_t length, const void *address, socklen_t size)
 {
-    return sendto(file, data, length, MSG_DONTWAIT | MSG_NOSIGNAL, size == 0 ? NULL : address, size);
+    return sendto(file, data, length, MSG_DONTWAIT, size == 0 ? NULL : address, size);
 }
 
-/** Receives a datagram; returns its own length, also if it is longer than `length`. */
+/** Receives a datagram; returns its own length, or one more than `length` if it is longer. */
 static inline long epg_host_socket_receive(int file, void *data, size_t length, void *address, socklen_t *size)
 {
-    return recvfrom(file, data, length, MSG_DONTWAIT | MSG_TRUNC, address, size);
+    struct iovec part = {.iov_base = data, .iov_len = length};
+    struct msghdr message = {
+        .msg_name = address, .msg_namelen = size != NULL ? *size : 0, .msg_iov = &part, .msg_iovlen = 1};
+    const long count = recvmsg(file, &message, MSG_DONTWAIT);
+    if (size != NULL) {
+        *size = message.msg_namelen;
+    }
+    return count >= 0 && (message.msg_flags & MSG_TRUNC) != 0 ? (long)length + 1 : count;
 }
 
 static inline void epg_host_socket_close(int file)
@@ -74,7 +81,7 @@ static inline bool epg_host_socket_is_full(int error)
     return error == EAGAIN || error == EWOULDBLOCK || error == ENOBUFS;
 }
 
-/** True if a call failed because of an earlier packet.  Linux reports such an error once; the call must be repeated. */
+/** True if a call failed because of an earlier packet.  Such an error is reported once; the call must be repeated. */
 static inline bool epg_host_socket_was_refused(int error)
 {
     return error == ECONNREFUSED || error == EINTR || error == EHOSTUNREACH || error == ENETUNREACH;

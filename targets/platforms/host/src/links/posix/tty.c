@@ -15,29 +15,9 @@
 #include <unistd.h>
 
 #include "port/clock.h"
+#include "speed.h"
 
 static const uint64_t RETRY_NS = 200000000; /* from one attempt to open a terminal to the next */
-
-typedef struct speed_of {
-    uint32_t baud_rate;
-    speed_t speed;
-} speed_of_t;
-
-static const speed_of_t speeds[] = {
-    {9600, B9600},       {19200, B19200},     {38400, B38400},     {57600, B57600},     {115200, B115200},
-    {230400, B230400},   {460800, B460800},   {500000, B500000},   {576000, B576000},   {921600, B921600},
-    {1000000, B1000000}, {1500000, B1500000}, {2000000, B2000000}, {3000000, B3000000}, {4000000, B4000000},
-};
-
-static speed_t speed_of(uint32_t baud_rate)
-{
-    for (size_t i = 0; i < sizeof speeds / sizeof speeds[0]; i++) {
-        if (speeds[i].baud_rate == baud_rate) {
-            return speeds[i].speed;
-        }
-    }
-    return B115200;
-}
 
 /** Makes the terminal transfer plain bytes, at this baud rate. */
 static bool make_raw(int file, uint32_t baud_rate)
@@ -49,9 +29,7 @@ static bool make_raw(int file, uint32_t baud_rate)
     cfmakeraw(&settings);
     settings.c_cflag |= CLOCAL | CREAD;
     settings.c_cflag &= ~(tcflag_t)CRTSCTS;
-    cfsetispeed(&settings, speed_of(baud_rate));
-    cfsetospeed(&settings, speed_of(baud_rate));
-    return tcsetattr(file, TCSANOW, &settings) == 0 && tcflush(file, TCIFLUSH) == 0;
+    return epg_host_speed_set(file, &settings, baud_rate) && tcflush(file, TCIFLUSH) == 0;
 }
 
 static void drop(epg_host_link_t *link)
@@ -97,7 +75,7 @@ static bool connected(void *context)
         open_device(link);
         return link->file >= 0;
     }
-    struct pollfd entry = {.fd = link->file};
+    struct pollfd entry = {.fd = link->file, .events = POLLHUP}; /* macOS looks at what is asked for */
     if (poll(&entry, 1, 0) > 0 && (entry.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0) {
         drop(link); /* it was unplugged */
     }
