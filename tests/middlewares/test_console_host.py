@@ -11,6 +11,7 @@ import signal
 import stat as stat_module
 import struct
 import subprocess
+import termios
 import time
 import zlib
 from pathlib import Path
@@ -220,14 +221,18 @@ def terminal(jiwy_host: Path, tmp_path: Path) -> Path:
 
 
 def test_a_terminal_of_its_own(terminal: Path) -> None:
-    """Like a board that a user plugs in, reads, leaves and reads again."""
+    """Like a board that a user plugs in, reads, leaves and reads again.  An echo that a user leaves ends."""
     for visit in range(3):
         file = os.open(terminal, os.O_RDWR | os.O_NOCTTY)
+        settings = termios.tcgetattr(file)
+        settings[3] |= termios.ECHO | termios.ICANON  # macOS sets them when a program opens a terminal
         console = Lines(file, file)
         assert console.until("ready ")[-1].startswith("ready node=JIWY_node epg=")
         assert console.ask("pan_subscriber=0.5") == ["ok setpoint"]
         assert stat(console.ask("stats"), "reconnects") == str(visit)
+        assert not termios.tcgetattr(file)[3] & (termios.ECHO | termios.ICANON)
         console.send("watch\n")
+        termios.tcsetattr(file, termios.TCSANOW, settings)
         os.close(file)
         time.sleep(0.05)  # the program notices a closed terminal, and cannot tell
 

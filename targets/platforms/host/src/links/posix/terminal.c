@@ -9,6 +9,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
@@ -21,8 +22,8 @@
 #include "port/clock.h"
 
 enum {
-    CHUNK = 1024,                /* bytes of one write(): a pipe that is ready takes 4096 without blocking (pipe(7)) */
-    GRACE_NS = 200 * 1000 * 1000 /* from the end of input to the end of the run */
+    CHUNK = PIPE_BUF < 1024 ? PIPE_BUF : 1024, /* bytes of one write(): a pipe that is ready takes PIPE_BUF (pipe(7)) */
+    GRACE_NS = 200 * 1000 * 1000               /* from the end of input to the end of the run */
 };
 
 /**
