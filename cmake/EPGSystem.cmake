@@ -15,7 +15,7 @@
 # In sysbuild.cmake of a Zephyr application, it adds an image for each target on Zephyr, with the name of the target, and
 # nothing else.  A relative path of SYSTEM then begins at the folder of sysbuild.cmake.
 #
-# Each target becomes a shared object beside the executable.  Needs Linux.  It stops with an error if an argument is
+# Each target becomes a shared object beside the executable.  It stops with an error if an argument is
 # wrong.  A mistake in the files is reported, and the configure run fails at its end.
 function(epg_add_system name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "SYSTEM" "TARGETS")
@@ -36,8 +36,11 @@ function(epg_add_system name)
     return()
   endif()
   _epg_require_new(epg_add_system "${name}")
-  if(NOT CMAKE_SYSTEM_NAME STREQUAL "Linux")
-    message(FATAL_ERROR "epg_add_system(${name}): systems are simulated on Linux only, and this project is for ${CMAKE_SYSTEM_NAME}.
+  _epg_data_folder(data)
+  include("${data}/targets/platforms/simulated/platform.cmake")
+  _epg_simulator_systems(possible)
+  if(NOT possible)
+    message(FATAL_ERROR "epg_add_system(${name}): systems are simulated on a computer, and this project is for ${CMAKE_SYSTEM_NAME}.
 In a firmware project, name its targets: epg_add_system(${name} SYSTEM ${arg_SYSTEM} TARGETS <target>...)")
   endif()
   get_filename_component(file "${arg_SYSTEM}" ABSOLUTE BASE_DIR "${CMAKE_CURRENT_SOURCE_DIR}")
@@ -62,7 +65,7 @@ In a firmware project, name its targets: epg_add_system(${name} SYSTEM ${arg_SYS
   foreach(target IN LISTS targets)
     _epg_system_part("${name}" "${target}" "${plant}" ${arguments})
   endforeach()
-  if(plant AND COMMAND _epg_simulated_plant)
+  if(plant)
     _epg_simulated_plant("${plant}")
     add_dependencies(${name} ${plant}_unit)
   endif()

@@ -69,7 +69,8 @@ def build_simulation(
                 span = Span(message.file or str(path), message.line, message.column, message.column + 1)
                 diagnostics.error(message.id or "simulation-failed", span, message.message, hint=message.hint)
             diagnostics.stop_if_errors()
-    return build / name
+    of_windows = build / f"{name}.exe"
+    return of_windows if of_windows.is_file() else build / name
 
 
 def _programs() -> dict[str, str]:

@@ -14,10 +14,10 @@ QUESTIONS = {
     ".cmake": r"\b(WIN32|APPLE|CMAKE_HOST_\w+)\b|CMAKE_SYSTEM_NAME STREQUAL \"(Linux|Windows|Darwin)\"",
 }
 QUESTIONS |= {".h": QUESTIONS[".c"], ".j2": QUESTIONS[".c"]}
-ROOMS = ("epg/generator/system", "epg/live/ports", "epg/live/keyboards", "targets/platforms/host/platform.cmake")
+PLATFORMS = tuple(f"targets/platforms/{name}/platform.cmake" for name in ("host", "simulated"))
+ROOMS = ("epg/generator/system", "epg/live/ports", "epg/live/keyboards", *PLATFORMS)
 ALONE = {
     "epg/generator/bootstrap.py": "the name of a folder for packages of one system",
-    "cmake/EPGSystem.cmake": "a message: the simulation of systems runs on Linux only",
     "cmake/EPGPython.cmake": "the separator of a list in the environment, and remedies of messages",
     "cmake/EPGCompiler.cmake": "CMake's generators that are on Windows only, and a remedy of a message",
     "cmake/epg_import.cmake": "a remedy of a message; users copy the file, so it needs nothing else",

@@ -70,3 +70,12 @@ def test_mistakes_are_reported_with_their_place(tmp_path: Path) -> None:
     assert "the file of the system says this: remove TCF" in project.fails_to_configure()
     project.edit("CMakeLists.txt", "TCF a.tcf SYSTEM two.system", "SYSTEM three.system")
     assert "three.system.yaml" in project.fails_to_configure()
+
+
+def test_a_project_for_a_microcontroller_simulates_nothing(tmp_path: Path) -> None:
+    project = project_in(tmp_path)
+    project.edit("CMakeLists.txt", "epg_add_target", "#")
+    project.edit("CMakeLists.txt", " TARGETS follower", "")
+    output = " ".join(project.fails_to_configure("-DCMAKE_SYSTEM_NAME=Generic").split())
+    assert "epg_add_system(others): systems are simulated on a computer, and this project is for Generic." in output
+    assert "name its targets: epg_add_system(others SYSTEM two.system.yaml TARGETS <target>...)" in output

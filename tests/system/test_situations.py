@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import pytest
@@ -24,7 +23,6 @@ def documented(number: int) -> dict[str, list[int]]:
     return {row[0]: [int(cell) for cell in row[-2:]] for row in rows if row[0] in ROWS[number]}
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="systems are simulated on Linux")
 @pytest.mark.parametrize("number", ROWS)
 def test_the_lags_on_the_page_are_those_of_the_simulation(number: int, tmp_path: Path) -> None:
     program = build_simulation(SITUATIONS / f"situation_{number}.system.yaml", tmp_path, Diagnostics())

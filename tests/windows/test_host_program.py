@@ -8,11 +8,9 @@ from __future__ import annotations
 
 import importlib.util
 import json
-import shutil
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -35,15 +33,6 @@ needs_zig = pytest.mark.skipif(
 def options(system: str) -> list[str]:
     defines = ["-DEPG_HOST_TARGET=epg_host_application", "-D_POSIX_C_SOURCE=200809L", "-D_DARWIN_C_SOURCE"]
     return ["-std=c11", *WARNINGS, *defines, *(f"-I{folder}" for folder in include_folders(system))]
-
-
-@pytest.fixture(scope="module")
-def computer(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Computer]:
-    made = Computer(tmp_path_factory.mktemp("windows"))
-    made.boot()
-    yield made
-    made.end()
-    shutil.rmtree(made.prefix, ignore_errors=True)
 
 
 @pytest.fixture(scope="module")

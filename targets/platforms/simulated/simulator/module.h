@@ -10,22 +10,28 @@
 
 #include "epg/unit.h"
 
-/** A copy of a shared object in memory. */
+/** A shared object in memory, with variables of its own. */
 typedef struct module {
-    int file; /**< stays open: dlopen() would find a loaded library of the same name again */
     void *library;
     const void *symbol;
+    int file; /**< of the copy that is loaded; not on Windows */
 } module_t;
 
 /**
- * Loads a new copy of `file` in `folder`, with variables of its own, and finds `symbol`.  Returns false after a message.
+ * Loads `file` of the folder of the program, with variables that have their first values, and finds `symbol`.  Returns
+ * false after a message, also if it is of another version.
  */
 bool module_load(module_t *module, const char *folder, const char *file, const char *symbol);
 
-/** Returns true if `version` is EPG_UNIT_VERSION; else false after a message about `file`. */
-bool module_has_version(const char *file, uint32_t version);
-
-/** Removes a copy.  Nothing of it may be used later. */
+/** Removes it from memory.  Nothing of it may be used later. */
 void module_unload(module_t *module);
+
+/* Of the system ------------------------------------------------------------------------------------------------- */
+
+/** Loads `file` and finds `symbol` for module_load().  Returns NULL, or what is wrong. */
+const char *module_open(module_t *module, const char *folder, const char *file, const char *symbol);
+
+/** Unloads a module that module_open() has loaded. */
+void module_close(module_t *module);
 
 #endif

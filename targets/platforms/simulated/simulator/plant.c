@@ -28,9 +28,6 @@ bool plant_open(plant_t *plant, const char *folder, const char *file, uint64_t s
         return false;
     }
     plant->model = plant->module.symbol;
-    if (!module_has_version(file, plant->model->version)) {
-        return false;
-    }
     plant->model->init();
     count(plant);
     if (starts_by_step) {

@@ -24,7 +24,7 @@ static void step(void)
 }
 
 extern const epg_plant_module_t epg_plant_module;
-__attribute__((visibility("default"))) const epg_plant_module_t epg_plant_module = {
+__attribute__((EPG_EXPORTED)) const epg_plant_module_t epg_plant_module = {
     .version = EPG_UNIT_VERSION,
     .inputs = &inputs,
     .inputs_size = sizeof inputs,

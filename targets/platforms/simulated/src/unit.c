@@ -67,7 +67,7 @@ static bool monitor(double *values)
 }
 
 extern const epg_unit_t epg_unit;
-__attribute__((visibility("default"))) const epg_unit_t epg_unit = {
+__attribute__((EPG_EXPORTED)) const epg_unit_t epg_unit = {
     .version = EPG_UNIT_VERSION,
     .host = &EPG_UNIT_HOST,
     .plant = &EPG_UNIT_PLANT,

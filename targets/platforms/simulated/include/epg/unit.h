@@ -4,7 +4,7 @@
  * A unit and a plant: the parts of a simulated system, as shared objects.
  *
  * Models, drivers and the runtime have global variables.  Each target and each plant is therefore a shared object of its
- * own with hidden symbols, and the program that simulates the system loads a copy of it.
+ * own with hidden symbols, which the program that simulates the system loads.
  *
  * Times of a unit are those of its own clock, in nanoseconds since its start.
  */
@@ -43,7 +43,7 @@ typedef struct epg_unit_plant {
 typedef uint64_t epg_unit_pause_t(void *context);
 
 typedef struct epg_unit {
-    uint32_t version;              /**< EPG_UNIT_VERSION */
+    uint32_t version;              /**< EPG_UNIT_VERSION; the first member */
     const epg_host_target_t *host; /**< the target: its period, its topics, and the signals that can be recorded */
     const epg_unit_plant_t *plant;
 
@@ -72,7 +72,7 @@ typedef struct epg_unit {
 
 /** A plant: one model. */
 typedef struct epg_plant_module {
-    uint32_t version; /**< EPG_UNIT_VERSION */
+    uint32_t version; /**< EPG_UNIT_VERSION; the first member */
     void *inputs;
     size_t inputs_size;
     void *outputs;

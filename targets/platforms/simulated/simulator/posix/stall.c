@@ -1,15 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A control cycle that takes simulated time.
+ * A control cycle that takes simulated time: it has a context of POSIX.
  */
-#define _GNU_SOURCE
+#define _XOPEN_SOURCE 700 /* macOS has contexts for nothing else */
 
 #include "stall.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <ucontext.h>
+
+#pragma GCC diagnostic ignored "-Wdeprecated-declarations" /* macOS recommends threads: a cycle needs only a stack */
 
 enum { STACK_SIZE = 1024 * 1024 }; /* models have no deep recursion: targets have stacks of some KiB */
 
