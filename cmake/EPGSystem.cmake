@@ -15,8 +15,8 @@
 # In sysbuild.cmake of a Zephyr application, it adds an image for each target on Zephyr, with the name of the target, and
 # nothing else.  A relative path of SYSTEM then begins at the folder of sysbuild.cmake.
 #
-# Each target becomes a shared object beside the executable.  It stops with an error if an argument is
-# wrong.  A mistake in the files is reported, and the configure run fails at its end.
+# Each target becomes a shared object beside the executable.  It stops with an error if an argument is wrong.  A mistake in
+# the files is reported, and the configure run fails at its end.
 function(epg_add_system name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "SYSTEM" "TARGETS")
   _epg_require(epg_add_system "SYSTEM <file> [TARGETS <target>...]" "${name}" "${arg_UNPARSED_ARGUMENTS}"

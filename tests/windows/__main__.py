@@ -139,40 +139,37 @@ class Run:
             raise RuntimeError("\n".join(("the outputs differ", *map(str, (ours[:200], theirs[:200])))))
         return f"{len(ours)} words are equal"
 
-    def main_job(self, generator: str) -> str:
-        """README's main job: builds and simulates JIWY, and compares the trace with that of Linux."""
-        build, ours = self.work / f"build {generator}", self.work / "linux_build"
+    def built(self, example: str, generator: str, target: str) -> tuple[Path, Path]:
+        """Builds ``target`` of an example on both systems, without a warning of Windows' compiler."""
+        build, ours = self.work / f"{generator} {example}", self.work / f"linux_{example}"
         if not ours.exists():
-            job = [
-                "cmake",
-                "-S",
-                str(ROOT / "examples/jiwy"),
-                "-B",
-                str(ours),
-                f"-DPython3_EXECUTABLE={sys.executable}",
-            ]
-            expect(subprocess.run(job, capture_output=True, text=True, check=False))
-            expect(
-                subprocess.run(
-                    ["cmake", "--build", str(ours), "--target", "tracking"], capture_output=True, text=True, check=False
-                )
-            )
-        python = f"-DPython3_EXECUTABLE=Z:{self.computer.python}"
-        example = self.source / "examples/jiwy"
-        expect(
-            self.computer.run(
-                "cmake.exe", "-S", example, "-B", build, "-G", generator, "-DCMAKE_C_COMPILER=gcc", python
-            )
-        )
-        text = expect(self.computer.run("cmake.exe", "--build", build, "--target", "tracking"))
+            python = f"-DPython3_EXECUTABLE={sys.executable}"
+            here("cmake", "-S", str(ROOT / "examples" / example), "-B", str(ours), python)
+            here("cmake", "--build", str(ours), "--target", target)
+        settings = ("-G", generator, "-DCMAKE_C_COMPILER=gcc", f"-DPython3_EXECUTABLE=Z:{self.computer.python}")
+        expect(self.computer.run("cmake.exe", "-S", self.source / "examples" / example, "-B", build, *settings))
+        text = expect(self.computer.run("cmake.exe", "--build", build, "--target", target))
         if "warning:" in text:
             raise RuntimeError(text[-3000:])
+        return ours, build
+
+    def main_job(self, generator: str) -> str:
+        """README's main job: builds and simulates JIWY, and compares the trace with that of Linux."""
+        ours, build = self.built("jiwy", generator, "tracking")
         count = same_folders(ours / "epg/jiwy", build / "epg/jiwy", {self.source: ROOT, build: ours})
         rows = same_columns(ours / "trace.csv", build / "trace.csv", ())
         # The reference is an ideal loop, calculated with the C library's sine, which differs in the last digits.
         same_columns(ours / "tracking.csv", build / "tracking.csv", ("reference",))
         pictures = len(list(build.glob("**/tracking.png")))
         return f"{count} files and {rows} rows are equal; {pictures} plot"
+
+    def cell(self) -> str:
+        """A system: the production cell, each of whose machines loses its power."""
+        ours, build = self.built("production_cell", "Ninja", "killed")
+        files = [file.relative_to(ours) for file in (*ours.glob("traces/*.csv"), ours / "topics.csv")]
+        # The plant places the blocks by the C library's sine.
+        rows = [same_columns(ours / file, build / file, ("outputs.x", "outputs.y")) for file in files]
+        return f"{len(files)} files with {sum(rows)} rows are equal"
 
     def described(self) -> str:
         description = "linux_host/jiwy.json"  # what `epg generate host` has written
@@ -183,7 +180,7 @@ class Run:
         return f"{same_folders(*folders, {self.source: ROOT})} files are equal"
 
     def simulated(self) -> str:
-        program = next((self.work / "build Ninja").glob("**/jiwy_host.exe"))
+        program = next((self.work / "Ninja jiwy").glob("**/jiwy_host.exe"))
         return self.epg(
             "simulate", program, "--scenario", "examples/jiwy/tracking.yaml", "--output", self.work / "simulated"
         ).splitlines()[-1]
@@ -290,7 +287,7 @@ class Run:
         capture = self.sent("enable", "pan_subscriber=0.25", "capture setpoint_pan position_pan rows=200")
         moved = self.sent("enable", "set Pan\\PID\\kp=3", "pan_subscriber=0.5")
         quiet = ("--signals", "none", "--duration", "1")
-        with self.com7(self.work / "linux_build/jiwy_host"):
+        with self.com7(self.work / "linux_jiwy/jiwy_host"):
             self.epg("live", "COM7", "--signals", ",".join(motor), "--csv", rows, "--duration", "0.3", *jogs)
             said = self.epg("live", "COM7", *quiet, *capture)
             said += self.epg("live", "COM7", *quiet, *self.sent("capture read", "stats"))
@@ -298,7 +295,7 @@ class Run:
         if said.count("csv ") < 200 or "stat enabled=0" not in said:
             raise RuntimeError(said)
         found = self.epg("identify", rows, "--duty", motor[0], "--position", motor[1], "--output", picture)
-        replayed = self.epg("replay", run, next((self.work / "build Ninja").glob("**/jiwy_host.exe")))
+        replayed = self.epg("replay", run, next((self.work / "Ninja jiwy").glob("**/jiwy_host.exe")))
         return f"{found.strip().splitlines()[0]}; {replayed.strip().splitlines()[-1]}"
 
     def python_tests(self) -> str:
@@ -329,6 +326,7 @@ class Run:
         for generator in ("Ninja", "Ninja Multi-Config"):
             report.step(f"cmake --build --target tracking ({generator})", partial(self.main_job, generator))
         report.step("epg simulate", self.simulated)
+        report.step("the simulation of a system", self.cell)
         report.step("ports of the registry", self.ports)
         report.step("programs and drives of Windows", self.system)
         report.step("epg connect builds and runs", self.page)
