@@ -115,11 +115,8 @@ def test_there_is_no_pseudo_terminal(computer: Computer, program: Path) -> None:
     ]
 
 
-MACHINES = pytest.mark.parametrize("machine", ["aarch64-macos", "x86_64-macos"])
-
-
 @needs_zig
-@MACHINES
+@pytest.mark.parametrize("machine", ["aarch64-macos", "x86_64-macos"])
 def test_it_compiles_for_macos(machine: str, tmp_path: Path) -> None:
     """All of it: real time, the console on standard input, by a pseudo-terminal and by UDP, and agents."""
     sources = [PROGRAMS / "motor.c", *platform_sources(system="macos")]
@@ -127,20 +124,3 @@ def test_it_compiles_for_macos(machine: str, tmp_path: Path) -> None:
     done = subprocess.run([*command, "-o", str(tmp_path / "motor")], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     assert (tmp_path / "motor").read_bytes()[:4] == MACH_O
-
-
-@needs_zig
-@MACHINES
-def test_jiwy_is_built_for_macos(machine: str, tmp_path: Path) -> None:
-    """By CMake: the generated code, the runtime, the console and the host, whose warnings are errors."""
-    tools = {}
-    for name, tool in {"C_COMPILER": f"cc -target {machine}", "AR": "ar", "RANLIB": "ranlib"}.items():
-        tools[name] = tmp_path / name
-        tools[name].write_text(f'#!/bin/sh\nexec "{sys.executable}" -m ziglang {tool} "$@"\n')
-        tools[name].chmod(0o755)
-    settings = [f"-DCMAKE_{name}={path}" for name, path in tools.items()]
-    settings += ["-DCMAKE_SYSTEM_NAME=Darwin", "-DCMAKE_C_FLAGS=-Werror", f"-DPython3_EXECUTABLE={sys.executable}"]
-    for command in (["-S", str(ROOT / "examples/jiwy"), "-B", str(tmp_path), *settings], ["--build", str(tmp_path)]):
-        done = subprocess.run(["cmake", *command], capture_output=True, text=True, check=False)
-        assert done.returncode == 0 and "warning:" not in done.stderr, done.stdout + done.stderr
-    assert (tmp_path / "jiwy_host").read_bytes()[:4] == MACH_O

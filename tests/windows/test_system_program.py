@@ -43,6 +43,11 @@ project(two LANGUAGES C)
 find_package(EPG REQUIRED)
 epg_add_system(two SYSTEM two.system.yaml)
 """
+HOST_PROGRAM = """
+epg_add_target(jiwy TCF host_jiwy.tcf MODEL model BINDINGS jiwy.bindings.yaml
+  PLANT plant PLANT_BINDINGS plant.bindings.yaml)
+epg_add_executable(jiwy_host EPG::jiwy)
+"""
 INPUTS = {
     "leader.in": "time,topic,value\n0,$enable,1\n5,/two/leader/pan_subscriber,0.4\n",
     "follower.in": "time,topic,value\n0,$enable,1\n",
@@ -54,12 +59,12 @@ OPTIONS = ("--duration", "6", "--setpoints", "leader=leader.in", "--setpoints", 
 OUTPUTS = ("--events", "events.csv", "--trace", ".", "--topics", "topics.csv", "--statistics", "statistics.json")
 
 
-def built(folder: Path, *settings: str) -> Project:
+def built(folder: Path, *settings: str, more: str = "") -> Project:
     """A project with two JIWYs, which was built without a warning of the compiler.  EPG's models have none: `-w`."""
     project = Project(folder, "two")
     copy_jiwy(project.source, "model", "plant")
     (project.source / "two.system.yaml").write_text(SYSTEM)
-    (project.source / "CMakeLists.txt").write_text(LISTS)
+    (project.source / "CMakeLists.txt").write_text(LISTS + more)
     project.configure(f"-DCMAKE_C_FLAGS={' '.join(WARNINGS)}", *settings)
     output = project.build("-j2")
     assert "warning:" not in output, output
@@ -96,8 +101,8 @@ def simulator_sources(*systems: str) -> list[Path]:
     return [*own, *(HOST / "src" / name for name in (*host, "program/interface.c"))]
 
 
-def simulator_options(system: str) -> list[str]:
-    folders = (SIMULATED / "include", SIMULATED / "simulator", *include_folders(system))
+def simulator_options() -> list[str]:
+    folders = (SIMULATED / "include", SIMULATED / "simulator", *include_folders())
     return ["-std=c11", *WARNINGS, "-D_POSIX_C_SOURCE=200809L", *(f"-I{folder}" for folder in folders)]
 
 
@@ -123,7 +128,7 @@ def test_other_systems(linux: Project, files: dict[str, bytes], tmp_path: Path) 
     program, folder, temporary = linux.build_folder / "other", tmp_path / "run", tmp_path / "temporary"
     sources = [linux.build_folder / "epg/two/two_system.c", *simulator_sources("posix", "elsewhere")]
     libraries = [linux.build_folder / "libepg_communication.a", linux.build_folder / "libepg_runtime.a", "-ldl", "-lm"]
-    command = ["gcc", "-O1", *simulator_options("elsewhere"), *map(str, [*sources, *libraries]), "-o", str(program)]
+    command = ["gcc", "-O1", *simulator_options(), *map(str, [*sources, *libraries]), "-o", str(program)]
     subprocess.run(command, check=True)
     folder.mkdir()
     temporary.mkdir()
@@ -140,7 +145,7 @@ def test_other_systems(linux: Project, files: dict[str, bytes], tmp_path: Path) 
 @needs_zig
 @pytest.mark.parametrize("machine", ["aarch64", "x86_64"])
 def test_macos(machine: str, tmp_path: Path) -> None:
-    """Zig's linker makes dynamic libraries in place of bundles, and does not hide symbols."""
+    """A system and a host program.  Zig's linker makes dynamic libraries, not bundles, and does not hide symbols."""
     zig = f'exec "{importlib.import_module("ziglang").__path__[0]}/zig"'
     bundle = 'words=("${@/#-bundle/-dynamiclib}")\nwords=("${words[@]/#-Wl,-exported_symbol,*/-Wl,-dead_strip}")\n'
     for name, text in {
@@ -153,6 +158,7 @@ def test_macos(machine: str, tmp_path: Path) -> None:
     tools = (
         f"-DCMAKE_{tool}={tmp_path / name}" for tool, name in (("C_COMPILER", "cc"), ("AR", "ar"), ("RANLIB", "ranlib"))
     )
-    build = built(tmp_path, "-DCMAKE_SYSTEM_NAME=Darwin", f"-DCMAKE_SYSTEM_PROCESSOR={machine}", *tools).build_folder
-    for name in ("two", "two_leader_unit.so", "two_leader_plant_unit.so", "two_follower_unit.so"):
+    settings = ("-DCMAKE_SYSTEM_NAME=Darwin", f"-DCMAKE_SYSTEM_PROCESSOR={machine}", *tools)
+    build = built(tmp_path, *settings, more=HOST_PROGRAM).build_folder
+    for name in ("jiwy_host", "two", "two_leader_unit.so", "two_leader_plant_unit.so", "two_follower_unit.so"):
         assert (build / name).read_bytes()[:4] == bytes.fromhex("cffaedfe")  # Mach-O, 64 bit
