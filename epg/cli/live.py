@@ -185,7 +185,9 @@ def _stream(client: Client, options: argparse.Namespace, relay: _Relay, names: l
 
 
 def _has_screen(options: argparse.Namespace) -> bool:
-    return sys.stdin.isatty() and sys.stdout.isatty() and not options.json and not options.keep
+    from epg.live.keyboards import keyboard
+
+    return keyboard().is_here() and not options.json and not options.keep
 
 
 def _send(client: Client, lines: Iterable[str], stop: StopRequest, *, quiet: bool) -> None:

@@ -11,11 +11,15 @@ from typing import Protocol, cast
 class Keyboard(Protocol):
     """Used by ``with``.  An :class:`OSError` with ``EIO`` says that the terminal has closed."""
 
+    def is_here(self) -> bool:
+        """True if a person sees the output and can press keys."""
+        ...
+
     def __enter__(self) -> Keyboard: ...
     def __exit__(self, *_: object) -> None: ...
 
     def pressed(self, seconds: float) -> str:
-        """The keys that were pressed, after at most ``seconds``."""
+        """The characters of the keys that were pressed, after at most ``seconds``.  An arrow key has none."""
         ...
 
 

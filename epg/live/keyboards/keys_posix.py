@@ -4,13 +4,19 @@
 from __future__ import annotations
 
 import os
+import re
 import select
 import sys
 import termios
 import tty
 
+_SEQUENCE = re.compile(r"\x1b([[O][0-?]*[ -/]*[@-~]?)?")  # of an arrow or a function key: ECMA-48, 5.4
+
 
 class PosixKeyboard:
+    def is_here(self) -> bool:
+        return sys.stdin.isatty() and sys.stdout.isatty()
+
     def __enter__(self) -> PosixKeyboard:
         self._file = sys.stdin.fileno()
         try:
@@ -24,7 +30,8 @@ class PosixKeyboard:
     def pressed(self, seconds: float) -> str:
         if not select.select([self._file], [], [], seconds)[0]:
             return ""
-        return os.read(self._file, 1024).decode("utf-8", "ignore") or "\x04"
+        read = os.read(self._file, 1024).decode("utf-8", "ignore")
+        return _SEQUENCE.sub("", read) if read else "\x04"
 
     def __exit__(self, *_: object) -> None:
         try:
