@@ -157,7 +157,7 @@ def _serve(session: Session, options: argparse.Namespace) -> int:
         address = server.new_address()
         # In a thread: some browsers return only when they are closed.
         threading.Thread(target=_open_browser, args=(address,), daemon=True).start()
-    for number in here.END_SIGNALS:  # end as after Ctrl-C, so that a running build is also ended
+    for number in here.end_signals():  # end as after Ctrl-C, so that a running build is also ended
         signal.signal(number, signal.default_int_handler)
     try:
         server.run(until_closed=options.until_closed)

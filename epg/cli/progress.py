@@ -36,7 +36,7 @@ class StopRequest:
         self.asked = False
 
     def __enter__(self) -> StopRequest:
-        ends = [number for number in here.END_SIGNALS if signal.getsignal(number) is not signal.SIG_IGN]  # by `nohup`
+        ends = [number for number in here.end_signals() if signal.getsignal(number) is not signal.SIG_IGN]  # by `nohup`
         numbers = [signal.SIGINT, *ends]
         self._before = {number: signal.signal(number, self._ask) for number in numbers}
         return self

@@ -32,14 +32,13 @@ class Group(Protocol):
 
 
 class OperatingSystem(Protocol):
-    """``END_SIGNALS`` ask a program to end, besides SIGINT; a path with ``NOT_IN_PROJECTS`` is not that of a project.
+    """A path with ``NOT_IN_PROJECTS`` is not that of a project.
 
     ``SHARES_PORTS``: the option SO_REUSEADDR only lets a program have a port again at once.
     """
 
     NAME: str
     """"linux", "macos" or "windows"."""
-    END_SIGNALS: tuple[int, ...]
     NOT_IN_PROJECTS: str
     SHARES_PORTS: bool
     HAS_TERMINALS: bool
@@ -69,6 +68,10 @@ class OperatingSystem(Protocol):
 
     def held(self, path: Path) -> AbstractContextManager[None]:
         """Locks a file or a folder.  Raises OSError if another process has locked it."""
+        ...
+
+    def end_signals(self) -> tuple[int, ...]:
+        """The signals by which the system asks this program to end from now on, besides SIGINT."""
         ...
 
     def quoted(self, command: Sequence[str]) -> str:

@@ -5,14 +5,16 @@ from __future__ import annotations
 
 import os
 import signal
+import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-_CTRL_BREAK = 1
+_CTRL_C, _CTRL_BREAK = 0, 1
 NAME = "windows"
-END_SIGNALS = (signal.SIGTERM, getattr(signal, "SIGBREAK", signal.SIGTERM))  # SIGBREAK: also the end of the window
+_SIGBREAK = getattr(signal, "SIGBREAK", signal.SIGTERM)
 NOT_IN_PROJECTS = "[#<>?]"
 SHARES_PORTS = False  # another program could then take over the port
 HAS_TERMINALS = False
@@ -21,6 +23,8 @@ _ACCOUNTING, _LIMITS, _KILL_ON_CLOSE = 1, 9, 0x2000  # JOBOBJECTINFOCLASS; JOB_O
 _LIMITS_SIZE, _LIMIT_FLAGS = 144, 16  # of JOBOBJECT_EXTENDED_LIMIT_INFORMATION on 64 bit, in bytes
 _ACCOUNTING_SIZE, _ACTIVE = 48, 40  # of JOBOBJECT_BASIC_ACCOUNTING_INFORMATION
 _REMOVABLE, _NO_DIALOGS = 2, 1
+_LONGEST_END = 30  # seconds; Windows ends the program after 5 s to 20 s
+_kept: list[object] = []  # functions that Windows calls
 
 
 def caches() -> Path:
@@ -66,6 +70,27 @@ def quoted(command: Sequence[str]) -> str:
     import subprocess
 
     return subprocess.list2cmdline(command)
+
+
+def _on_event(event: int) -> bool:
+    """Called in a thread of Windows, which ends this program after the return, but for Ctrl-C and Ctrl-Break."""
+    if event == _CTRL_C or signal.getsignal(_SIGBREAK) == signal.SIG_DFL:
+        return False  # to Python's own handler
+    signal.raise_signal(_SIGBREAK)
+    if event != _CTRL_BREAK:
+        time.sleep(_LONGEST_END)
+    return True
+
+
+@cache
+def end_signals() -> tuple[int, ...]:
+    """SIGBREAK is also the end of the window and of the user's session, until which this program can then work."""
+    import ctypes
+
+    handler = getattr(ctypes, "WINFUNCTYPE")(ctypes.c_int, ctypes.c_uint32)(_on_event)  # noqa: B009
+    _library("kernel32").SetConsoleCtrlHandler(handler, True)
+    _kept.append(handler)
+    return (signal.SIGTERM, _SIGBREAK)
 
 
 def _library(name: str) -> Any:

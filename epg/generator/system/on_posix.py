@@ -13,7 +13,6 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 NAME = "macos" if sys.platform == "darwin" else "linux"
-END_SIGNALS = (signal.SIGTERM, signal.SIGHUP)
 NOT_IN_PROJECTS = r'[#<>?:;"\\]'
 SHARES_PORTS = True
 HAS_TERMINALS = True
@@ -99,6 +98,10 @@ def held(path: Path) -> Iterator[None]:
         yield
     finally:
         os.close(handle)
+
+
+def end_signals() -> tuple[int, ...]:
+    return (signal.SIGTERM, signal.SIGHUP)
 
 
 def quoted(command: Sequence[str]) -> str:
