@@ -14,7 +14,9 @@ import re
 import shutil
 import subprocess
 import sys
+import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
 
@@ -24,8 +26,11 @@ from tests.checkout import ROOT
 from tests.connect.page import Page
 from tests.connect.robots import new_project, write_model
 from tests.connect.started import generate
+from tests.doubles.toolchain import Missing, arm_gcc, node, pico_sdk, rp2040js
+from tests.platforms.pico.closed_loop.board import Board, image
+from tests.platforms.pico.xrce.line import Line
 from tests.twenty_sim.generate import generate_from
-from tests.waiting import until
+from tests.waiting import read_until, until
 from tests.windows.computer import HERE, MISSING, Computer, is_here, windows
 
 TARGETS = ("host", "rpi_pico2_freertos", "nucleo_h743zi_bare_metal", "rpi_pico_zephyr")
@@ -35,6 +40,14 @@ INSTALL = "py -m pip install ."
 GET = "Get it: winget install BrechtSanders.WinLibs.POSIX.UCRT"
 PYTHON_TESTS = 1500
 """Tests that must pass with Python of Windows."""
+KEYS = (
+    ("", "inputs.position_pan"),
+    (" ", "by=program"),
+    ("à\x7f\x1b[A\x1bOP", ""),  # a letter, deleted; keys without letters
+    ("enable\r", "enabled=1"),
+    ("\x1b[A ", "enabled=0"),
+)
+"""Typed at the screen of ``epg live``, each with a text that must follow."""
 
 
 class Report:
@@ -48,6 +61,8 @@ class Report:
         try:
             result = f"passed  {name}: {work() or 'good'}"
             self.passed += 1
+        except Missing as problem:
+            result = f"skipped {name}: {problem}"
         except Exception as error:
             result = f"FAILED  {name}: {type(error).__name__}: {error}"
             self.failed += 1
@@ -201,7 +216,8 @@ class Run:
         letter.unlink(missing_ok=True)
         letter.symlink_to(drive)
         expect(self.computer.run("reg", "add", r"HKLM\Software\Wine\Drives", "/v", "u:", "/d", "floppy", "/f"))
-        text = expect(self.computer.run(self.computer.python, HERE / "use_system.py")).strip()
+        program = next((self.work / "build Ninja").glob("**/jiwy_host.exe"))
+        text = expect(self.computer.run(self.computer.python, HERE / "use_system.py", program)).strip()
         if "RPI-RP2 is U:\\" not in text:
             raise RuntimeError(text)
         return text
@@ -247,13 +263,28 @@ class Run:
         command = [str(program), "--realtime", "--console-pty", str(port), "--duration", "600"]
         with subprocess.Popen(command, stdout=subprocess.DEVNULL) as target:
             until(port.exists, "the target has no port")
-            link = self.computer.prefix / "dosdevices/com7"
-            link.unlink(missing_ok=True)
-            link.symlink_to(port)
+            self.computer.connect("com7", port)
             try:
                 yield
             finally:
                 target.kill()
+
+    @contextlib.contextmanager
+    def pico_at_com7(self) -> Iterator[None]:
+        """COM7 is the USB port of an emulated RP2040 with EPG's firmware, which runs all the time."""
+        for need in (pico_sdk, arm_gcc, node, rp2040js):
+            need()
+        over = threading.Event()
+        with Board(image("bare_metal"), {"pan": 0.12, "tilt": 0.12}) as board, ThreadPoolExecutor() as pool:
+            board.home()
+            with contextlib.closing(Line(board.pico)) as line:
+                self.computer.connect("com7", Path(line.path))
+                runs = pool.submit(line.run_until, over.is_set, 600_000)
+                try:
+                    yield
+                finally:
+                    over.set()
+                    assert runs.result(), "the chip did not run to the end"
 
     def live(self) -> str:
         """Twenty signals of every control cycle, for a minute."""
@@ -298,6 +329,43 @@ class Run:
         replayed = self.epg("replay", run, next((self.work / "Ninja jiwy").glob("**/jiwy_host.exe")))
         return f"{found.strip().splitlines()[0]}; {replayed.strip().splitlines()[-1]}"
 
+    def pico(self) -> str:
+        """A chip that is slower than real time: its cycles are judged.  A program of Windows replays the recording."""
+        rows, run, shown = self.work / "pico.csv", self.work / "pico.jsonl", ("live", "COM7", "--duration", "20")
+        tuned = self.sent("disable", "enable", "set Pan\\PID\\kp=3", "pan_subscriber=0.5")
+        quiet = ("live", "COM7", "--signals", "none", "--duration", "1")
+        with self.pico_at_com7():
+            text = self.epg(*shown, "--every", "1", "--csv", rows) + self.epg(*shown, *tuned, "--record", run)
+            text += self.epg(*quiet, *self.sent("enable", "capture setpoint_pan position_pan rows=50"))
+            text += self.epg(*quiet, *self.sent("capture read", "stats"))
+        with rows.open(encoding="utf-8") as file:
+            times = [round(1000 * float(row["time"])) for row in csv.DictReader(file)]
+        words = (", 0 dropped, 0 damaged", "stat enabled=0", "stat overruns=0", "stat missed=0", "stat outputs_late=0")
+        if [text.count(word) for word in words] != [2, 1, 1, 1, 1] or text.count("csv ") != 51:
+            raise RuntimeError(text)
+        if times != list(range(len(times))) or len(times) < 100:
+            raise RuntimeError(f"{len(times)} rows, but not one for each cycle")
+        replayed = self.epg("replay", run, next((self.work / "build Ninja").glob("**/jiwy_host.exe")))
+        return f"{len(times)} cycles, {text.count('ok ')} answers, none lost; {replayed.strip().splitlines()[-1]}"
+
+    def screen(self) -> str:
+        """Keys at the screen of ``epg live``.  The console of Wine is a terminal of this computer."""
+        ours, theirs = os.openpty()
+        command = ("wine", windows(self.computer.python), "-m", "epg", "live", "COM7")
+        with self.com7(self.work / "linux_build/jiwy_host"):
+            ends = {"stdin": theirs, "stdout": theirs, "stderr": theirs}
+            program = subprocess.Popen(command, cwd=self.source, env=self.computer.environment, **ends)
+            os.close(theirs)
+            for typed, text in KEYS:
+                os.write(ours, typed.encode())
+                read_until(ours, text)
+            os.write(ours, b"\x04")  # Ctrl-D; by Ctrl-C, the terminal ends Wine's console
+            read_until(ours, "rows, 0 dropped, 0 damaged")
+            if program.wait(20) != 0:
+                raise RuntimeError(f"status {program.returncode}")
+        os.close(ours)
+        return f"{len(KEYS)} times keys, Ctrl-D"
+
     def python_tests(self) -> str:
         """Tests of `check` that need no program of Linux, with Python of Windows."""
         listed = yaml.safe_load((HERE / "python_tests.yaml").read_text(encoding="utf-8"))
@@ -332,6 +400,8 @@ class Run:
         report.step("epg connect builds and runs", self.page)
         report.step("epg live COM7 for 60 s", self.live)
         report.step("a lease, a recording, its replay and a motor at COM7", self.session)
+        report.step("the screen of epg live", self.screen)
+        report.step("an emulated Pico at COM7", self.pico)
 
 
 class User:
@@ -454,4 +524,5 @@ def main(arguments: Sequence[str]) -> int:
     return 1 if report.failed else 0
 
 
-sys.exit(main(sys.argv[1:]))
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

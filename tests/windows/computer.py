@@ -121,6 +121,12 @@ class Computer:
             raise RuntimeError(f"status {done.returncode}: {line}\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}")
         return done.stdout + done.stderr
 
+    def connect(self, port: str, terminal: Path) -> None:
+        """Makes a terminal of this computer a serial port of Windows, such as ``com7``."""
+        link = self.prefix / "dosdevices" / port
+        link.unlink(missing_ok=True)
+        link.symlink_to(terminal)
+
     def boot(self) -> None:
         """Makes Wine's files: 700 MB in a few seconds."""
         self.folder.mkdir(parents=True, exist_ok=True)
