@@ -18,6 +18,8 @@ import pytest
 from epg.live.client import Client
 from epg.live.udp import UdpPort
 from tests.checkout import ROOT
+from tests.doubles.toolchain import skip_if_missing, xrce_libraries
+from tests.doubles.xrce_agent import Agent, PtyLink, float64, read_float64
 from tests.platforms.host.program import PROGRAMS, WARNINGS, include_folders, platform_sources
 from tests.windows.computer import GCC, MISSING, Computer, is_here
 
@@ -35,15 +37,19 @@ def options(system: str) -> list[str]:
     return ["-std=c11", *WARNINGS, *defines, *(f"-I{folder}" for folder in include_folders(system))]
 
 
-@pytest.fixture(scope="module")
-def program(computer: Computer) -> Path:
+def build(project: str, folder: Path) -> Path:
     """JIWY, built by CMake of this computer for Windows."""
-    build = computer.folder / "build"
     settings = ("-DCMAKE_SYSTEM_NAME=Windows", f"-DCMAKE_C_COMPILER={GCC}", f"-DPython3_EXECUTABLE={sys.executable}")
-    for command in (["-S", str(ROOT / "examples/jiwy"), "-B", str(build), *settings], ["--build", str(build), "-j2"]):
+    configure = ["-S", str(ROOT / project), "-B", str(folder), *settings]
+    for command in (configure, ["--build", str(folder), "-j2", "--target", "jiwy_host"]):
         done = subprocess.run(["cmake", *command], capture_output=True, text=True, check=False)
         assert done.returncode == 0 and "warning:" not in done.stderr, done.stderr
-    return build / "jiwy_host.exe"
+    return folder / "jiwy_host.exe"
+
+
+@pytest.fixture(scope="module")
+def program(computer: Computer) -> Path:
+    return build("examples/jiwy", computer.folder / "build")
 
 
 @needs_wine
@@ -113,6 +119,24 @@ def test_there_is_no_pseudo_terminal(computer: Computer, program: Path) -> None:
         "port: error: Windows has no pseudo-terminals",
         "hint: --console-udp 127.0.0.1:7000",
     ]
+
+
+@needs_wine
+def test_an_agent_at_a_serial_port(computer: Computer) -> None:
+    """COM8 is a terminal of this computer.  JIWY follows a setpoint of ROS 2, and tells its agent that it ends."""
+    skip_if_missing(xrce_libraries)
+    node = build("tests/middlewares/xrce/jiwy", computer.folder / "node")
+    link = PtyLink(computer.folder / "line")
+    with Agent(link) as agent:
+        computer.connect("com8", link.path)
+        process = computer.start(node, "--realtime", "--duration", "20", "--serial-device", "COM8")
+        agent.topics.wait_for_reader("rt/pan_subscriber")
+        agent.topics.wait_for_sample("rt/pan_publisher")
+        agent.topics.publish("rt/pan_subscriber", float64(0.5))
+        agent.wait_until(lambda: abs(read_float64(agent.topics.newest("rt/pan_publisher")) - 0.5) < 0.02)
+        errors = process.communicate(timeout=60)[1]
+        agent.wait_until(lambda: not agent.clients)
+    assert (process.returncode, errors, link.broken) == (0, "jiwy: connected to the agent at COM8\n", 0)
 
 
 @needs_zig

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The link to the agent of a middleware: by UDP, or by a terminal such as /dev/ttyUSB0.
+ * The link to the agent of a middleware: by UDP, or by a terminal such as /dev/ttyUSB0 or COM3.
  *
  * Only one thread may use a link.  No function waits.
  */
@@ -34,8 +34,7 @@ bool epg_host_link_is_address(const char *text);
 bool epg_host_link_udp(epg_host_link_t *link, const char *address);
 
 /**
- * Makes a link by the terminal `device`, which need not exist yet: it is opened as soon as it does.  Returns false, with
- * a message, on a system that has no such links.
+ * Makes a link by the terminal `device`, which need not exist yet: it is opened as soon as it does.  Returns true.
  */
 bool epg_host_link_serial(epg_host_link_t *link, const char *device, uint32_t baud_rate);
 

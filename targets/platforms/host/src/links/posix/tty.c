@@ -1,23 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A link by a terminal: a serial port, or a pseudo-terminal that another program has made.
+ * A serial port of POSIX, or a pseudo-terminal that another program has made.
  */
 #define _DEFAULT_SOURCE /* for baud rates above those of POSIX */
 
-#include "links/link.h"
+#include "links/tty.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
-#include <string.h>
 #include <termios.h>
 #include <unistd.h>
 
-#include "port/clock.h"
 #include "speed.h"
-
-static const uint64_t RETRY_NS = 200000000; /* from one attempt to open a terminal to the next */
 
 /** Makes the terminal transfer plain bytes, at this baud rate. */
 static bool make_raw(int file, uint32_t baud_rate)
@@ -32,104 +28,40 @@ static bool make_raw(int file, uint32_t baud_rate)
     return epg_host_speed_set(file, &settings, baud_rate) && tcflush(file, TCIFLUSH) == 0;
 }
 
-static void drop(epg_host_link_t *link)
+int epg_host_tty_open(const char *device, uint32_t baud_rate)
 {
-    if (link->file >= 0) {
-        close(link->file);
+    const int file = open(device, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    if (file >= 0 && !make_raw(file, baud_rate)) {
+        close(file);
+        return -1;
     }
-    link->file = -1;
-    link->waiting = 0;
-    link->retry_ns = epg_host_monotonic_ns() + RETRY_NS;
+    return file;
 }
 
-static void open_device(epg_host_link_t *link)
+bool epg_host_tty_is_there(int file)
 {
-    link->file = open(link->device, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-    if (link->file < 0 || !make_raw(link->file, link->baud_rate)) {
-        drop(link);
-    }
+    struct pollfd entry = {.fd = file, .events = POLLHUP}; /* macOS looks at what is asked for */
+    return poll(&entry, 1, 0) <= 0 || (entry.revents & (POLLHUP | POLLERR | POLLNVAL)) == 0;
 }
 
-/** Writes as many of the waiting bytes as the terminal takes now. */
-static void put_out(epg_host_link_t *link)
+/** The result of a read or write, which is 0 if the terminal is not ready. */
+static long done(ssize_t count)
 {
-    if (link->file < 0 || link->waiting == 0) {
-        return;
-    }
-    const ssize_t count = write(link->file, link->output, link->waiting);
-    if (count > 0) {
-        link->waiting -= (size_t)count;
-        memmove(link->output, link->output + count, link->waiting);
-    } else if (count < 0 && errno != EAGAIN && errno != EINTR) {
-        drop(link);
-    }
+    return count < 0 && (errno == EAGAIN || errno == EINTR) ? 0 : count;
 }
 
-static bool connected(void *context)
+long epg_host_tty_read(int file, void *data, size_t size)
 {
-    epg_host_link_t *link = context;
-    if (link->file < 0) {
-        if (epg_host_monotonic_ns() < link->retry_ns) {
-            return false;
-        }
-        open_device(link);
-        return link->file >= 0;
-    }
-    struct pollfd entry = {.fd = link->file, .events = POLLHUP}; /* macOS looks at what is asked for */
-    if (poll(&entry, 1, 0) > 0 && (entry.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0) {
-        drop(link); /* it was unplugged */
-    }
-    put_out(link);
-    return link->file >= 0;
+    const ssize_t count = read(file, data, size);
+    return count == 0 ? -1 : done(count);
 }
 
-static size_t read_bytes(void *context, void *data, size_t size)
+long epg_host_tty_write(int file, const void *data, size_t size)
 {
-    epg_host_link_t *link = context;
-    if (link->file < 0) {
-        return 0;
-    }
-    const ssize_t count = read(link->file, data, size);
-    if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR)) {
-        drop(link);
-    }
-    return count > 0 ? (size_t)count : 0;
+    return done(write(file, data, size));
 }
 
-static size_t writable(void *context)
+void epg_host_tty_close(int file)
 {
-    epg_host_link_t *link = context;
-    put_out(link);
-    return link->file >= 0 ? sizeof link->output - link->waiting : 0;
-}
-
-static size_t write_bytes(void *context, const void *data, size_t size)
-{
-    epg_host_link_t *link = context;
-    const size_t room = link->file >= 0 ? sizeof link->output - link->waiting : 0;
-    const size_t count = size < room ? size : room;
-    memcpy(link->output + link->waiting, data, count);
-    link->waiting += count;
-    put_out(link);
-    return count;
-}
-
-bool epg_host_link_serial(epg_host_link_t *link, const char *device, uint32_t baud_rate)
-{
-    *link = (epg_host_link_t){
-        .stream =
-            {.connected = connected, .read = read_bytes, .write = write_bytes, .writable = writable, .context = link},
-        .file = -1,
-        .device = device,
-        .baud_rate = baud_rate,
-    };
-    return true;
-}
-
-void epg_host_link_close(epg_host_link_t *link)
-{
-    if (link->file >= 0) {
-        close(link->file);
-    }
-    link->file = -1;
+    close(file);
 }

@@ -36,8 +36,8 @@ void epg_host_services_wait(const epg_host_services_t *services, uint64_t time_n
 {
     HANDLE handles[MOST_HANDLES];
     DWORD count = 0;
-    if (services->link != NULL && services->link->file >= 0) {
-        handles[count++] = event_of(services->link->file);
+    if (services->link != NULL && services->link->file >= 0 && services->link->device == NULL) {
+        handles[count++] = event_of(services->link->file); /* the wait for a serial port is a millisecond */
     }
     if (services->udp != NULL) {
         handles[count++] = event_of(epg_host_udp_console_file(services->udp));
