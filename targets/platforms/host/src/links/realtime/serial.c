@@ -3,6 +3,8 @@
  * @file
  * A link by a serial port.
  */
+#define _POSIX_C_SOURCE 200809L
+
 #include "links/link.h"
 
 #include <string.h>
