@@ -23,8 +23,8 @@ static void step(void)
     JOIN(EPG_PLANT, _step)(JOIN(EPG_PLANT, _instance)(0), &inputs, &outputs);
 }
 
-extern const epg_plant_module_t epg_plant_module;
-__attribute__((EPG_EXPORTED)) const epg_plant_module_t epg_plant_module = {
+extern const epg_plant_module_t epg_plant_module __attribute__((EPG_EXPORTED));
+const epg_plant_module_t epg_plant_module = {
     .version = EPG_UNIT_VERSION,
     .inputs = &inputs,
     .inputs_size = sizeof inputs,

@@ -66,8 +66,8 @@ static bool monitor(double *values)
     return epg_control_monitor(control(), values);
 }
 
-extern const epg_unit_t epg_unit;
-__attribute__((EPG_EXPORTED)) const epg_unit_t epg_unit = {
+extern const epg_unit_t epg_unit __attribute__((EPG_EXPORTED));
+const epg_unit_t epg_unit = {
     .version = EPG_UNIT_VERSION,
     .host = &EPG_UNIT_HOST,
     .plant = &EPG_UNIT_PLANT,
