@@ -24,6 +24,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import field
 from pathlib import Path
 
+from epg.generator.bootstrap import cache_folder
 from epg.generator.catalog.platform import Flashing
 from epg.generator.dataclass import dataclass
 from epg.generator.diagnostics import Diagnostics
@@ -32,7 +33,7 @@ from epg.generator.emit.outputs import application_outputs
 from epg.generator.resolve.application import Application
 from epg.generator.source import Span
 from epg.generator.tools.find_tool import Surroundings, find_tool
-from epg.generator.tools.tools import Tool
+from epg.generator.tools.tools import Tool, load_tools
 from epg.generator.tools.usb_boards import UsbDevice, attached
 from epg.runs.robot import Robot, robot_of
 from epg.system.check_system import CheckedSystem
@@ -85,7 +86,17 @@ class FlashJob:
 def flashing_of(checked: CheckedSystem, name: str) -> Flashing | None:
     """How the boards of a target are flashed; None if its family of chips does not say it."""
     family = checked.loader.family(checked.applications[name].target.soc.family)
-    return None if family is None else family.flash
+    if family is None or family.flash is None:
+        return None
+    return usable(family.flash, load_tools(checked.loader.roots, Diagnostics()), Surroundings.here(cache_folder()))
+
+
+def usable(flashing: Flashing, tools: Mapping[str, Tool], where: Surroundings) -> Flashing:
+    """``flashing``, or its other way if only the tool of that is on this computer."""
+    other = flashing.otherwise
+    if other is None or other.tool not in tools or not program_of(tools[other.tool], where):
+        return flashing
+    return flashing if flashing.tool in tools and program_of(tools[flashing.tool], where) else other
 
 
 def plan(checked: CheckedSystem, names: Collection[str], images: Path, diagnostics: Diagnostics) -> list[FlashJob]:
@@ -349,9 +360,10 @@ def _last(output: str) -> str:
 
 def program_of(tool: Tool, where: Surroundings) -> str:
     """The program of a tool: its name if it is in ``PATH``, else its path; empty if it is not found."""
-    if shutil.which(tool.name, path=where.path):
-        return tool.name
+    name = tool.programs[0] if tool.programs else tool.name
+    if shutil.which(name, path=where.path):
+        return name
     path = find_tool(tool, where).path
     if path is None:
         return ""
-    return shutil.which(tool.name, path=str(path)) or "" if path.is_dir() else str(path)
+    return shutil.which(name, path=str(path)) or "" if path.is_dir() else str(path)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import os
-import sys
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -28,7 +27,7 @@ from epg.system import flash
 from tests.connect.builds import job_of
 from tests.connect.page import Denied, serving, session_of
 from tests.connect.robots import new_project
-from tests.system.test_flash import FIRST, OPENOCD, PICOTOOL, PROBE, SECOND, usb
+from tests.system.test_flash import FIRST, OPENOCD, PICOTOOL, PROBE, PROGRAMMER, SECOND, stand_in, usb
 from tests.waiting import until
 
 WEST = r"""
@@ -47,9 +46,7 @@ def tools(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     folder = tmp_path / "tools"
     folder.mkdir()
     for name, text in (("picotool", PICOTOOL), ("openocd", OPENOCD), ("west", WEST)):
-        (folder / f"{name}.py").write_text(text)
-        (folder / name).write_text(f'#!/bin/sh\nexec "{sys.executable}" "{folder / name}.py" "$@"\n')
-        (folder / name).chmod(0o755)
+        stand_in(folder, name, text)
     monkeypatch.setenv("PATH", f"{folder}{os.pathsep}{os.environ['PATH']}")
     (tmp_path / "usb").mkdir()
     monkeypatch.setattr(usb_boards, "DEVICES", tmp_path / "usb")
@@ -231,6 +228,19 @@ def test_openocd_writes_to_a_nucleo(tools: Path, tmp_path: Path) -> None:
     assert calls(tools)[-1] == (
         f"openocd -f board/st_nucleo_h743zi.cfg -c adapter serial {PROBE} -c program {{{made[1]}}} verify reset exit"
     )
+
+
+def test_stm32cubeprogrammer_writes_to_a_nucleo(tools: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    job, made = robot(tmp_path, "nucleo_h743zi_bare_metal_jiwy")
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    monkeypatch.setenv("PATH", str(tools))
+    (tools / "openocd").unlink()
+    attach(tmp_path, nucleos=[{"probe": PROBE, "idcode": "10036450"}])
+    plug(tmp_path, "1-1", "0483:374e", PROBE, "STLINK-V3", "4")
+    assert boards(job, made[1:]).problem == "OpenOCD was not found"
+    stand_in(tools, "STM32_Programmer_CLI", PROGRAMMER)
+    assert write(boards(job, made[1:]))["state"] == "done"
+    assert calls(tools)[-1] == f"STM32_Programmer_CLI -c port=SWD sn={PROBE} -w {made[1]} -v -rst"
 
 
 def test_west_writes_programs_of_zephyr(tools: Path, tmp_path: Path) -> None:

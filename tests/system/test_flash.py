@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The images of a system are written to the right boards, or to none.
 
-Stand-ins for picotool and OpenOCD run here.  They check their arguments: picotool's as the real one of version 2.2.0
-does, which accepts the options that choose a board only one after the other.  A file describes the boards.
+Stand-ins for picotool, OpenOCD and STM32CubeProgrammer run here.  They check their arguments: picotool's as the real
+one of version 2.2.0 does, which accepts the options that choose a board only one after the other.  A file describes the
+boards.
 """
 
 from __future__ import annotations
@@ -112,6 +113,38 @@ else:
     json.dump(boards, open(os.path.join(here, "boards.json"), "w"))
 """
 
+PROGRAMMER = r"""
+import json, os, re, sys
+here = os.path.dirname(os.path.abspath(__file__))
+boards = json.load(open(os.path.join(here, "boards.json")))
+words = sys.argv[1:]
+if words == ["--version"]:
+    sys.exit(print("STM32CubeProgrammer version: 2.15.0"))
+print(*["STM32_Programmer_CLI", *words], sep="\t", file=open(os.path.join(here, "log.txt"), "a"))
+# user manual UM2237, 3.2
+match = re.fullmatch(r"-c port=SWD( mode=HOTPLUG)? sn=(\w+)( -w (\S+\.elf) -v -rst)?", " ".join(words))
+assert match and bool(match[1]) != bool(match[3]), words
+board = [b for b in boards["nucleos"] if b["probe"] == match[2]]
+if not board:
+    sys.exit(print("Error: No debug probe detected.") or 1)
+print("ST-LINK SN  : %s\nDevice ID   : 0x%s\nDevice name : STM32" % (match[2], board[0]["idcode"][-3:]))
+if match[4]:
+    assert os.path.isfile(match[4]), words
+    board[0]["image"] = match[4]
+    json.dump(boards, open(os.path.join(here, "boards.json"), "w"))
+"""
+PROGRAMMER_PLACE = "STMicroelectronics/STM32Cube/STM32CubeProgrammer/bin"
+"""The folder of STM32CubeProgrammer in the home folder."""
+
+
+def stand_in(folder: Path, name: str, text: str, place: Path | None = None) -> None:
+    """The program ``name`` in ``place``, or in ``folder``, where its script and its data are."""
+    (folder / f"{name}.py").write_text(text)
+    program = (place or folder) / name
+    program.parent.mkdir(parents=True, exist_ok=True)
+    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" "{folder / name}.py" "$@"\n')
+    program.chmod(0o755)
+
 
 WATCHER = """targets:
   watcher: {tcf: host_jiwy, model: model, bindings: jiwy.bindings.yaml, set: {communication: {middleware: xrce}}}
@@ -194,10 +227,8 @@ def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Bench:
     copy_jiwy(tmp_path, "model")
     tools = tmp_path / "tools"
     tools.mkdir()
-    for name, text in (("picotool", PICOTOOL), ("openocd", OPENOCD)):
-        (tools / f"{name}.py").write_text(text)
-        (tools / name).write_text(f'#!/bin/sh\nexec "{sys.executable}" "{tools / name}.py" "$@"\n')
-        (tools / name).chmod(0o755)
+    stand_in(tools, "picotool", PICOTOOL)
+    stand_in(tools, "openocd", OPENOCD)
     made = Bench(tmp_path)
     made.system.write_text(SYSTEM)
     first = {"serial": FIRST, "chip": "RP2040", "bootsel": 0, "program": "leader"}
@@ -421,6 +452,31 @@ def test_tools_that_are_missing(
     run(bench, "--target", "third", status=4)
     assert re.search(r"the program openocd was not found\. Get it:\n  .*openocd", capfd.readouterr().err)
     run(bench, "--target", "third", "--dry-run")
+
+
+def test_stm32cubeprogrammer_is_used_where_openocd_is_missing(
+    bench: Bench, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bench.build("third")
+    monkeypatch.setenv("HOME", str(bench.folder / "home"))
+    monkeypatch.setenv("PATH", str(bench.folder / "tools"))
+    stand_in(bench.folder / "tools", "STM32_Programmer_CLI", PROGRAMMER, bench.folder / "home" / PROGRAMMER_PLACE)
+    run(bench, "--target", "third")
+    assert [call[0] for call in bench.calls()] == ["openocd", "openocd"]
+    (bench.folder / "tools/openocd").unlink()
+    bench.change(nucleos=[{"probe": PROBE, "idcode": "10016451"}])
+    run(bench, "--target", "third", status=1)
+    assert "has the chip 451, but 'third' is for the STM32H743, which is 450" in capfd.readouterr().err
+    bench.change(nucleos=[{"probe": PROBE, "idcode": "10036450"}])
+    run(bench, "--target", "third")
+    assert bench.written() == {PROBE: "third_firmware"}
+    image = bench.folder / "build/three_images/third/third_firmware.elf"
+    program = ["STM32_Programmer_CLI", "-c", "port=SWD"]
+    find, write = [*program, "mode=HOTPLUG", f"sn={PROBE}"], [*program, f"sn={PROBE}", "-w", f"{image}", "-v", "-rst"]
+    assert bench.calls()[2:] == [find, find, write]
+    bench.change(nucleos=[])
+    run(bench, "--target", "third", status=1)
+    assert f"the board {PROBE} of 'third' does not answer: Error: No debug probe detected." in capfd.readouterr().err
 
 
 def test_json(bench: Bench, capfd: pytest.CaptureFixture[str]) -> None:

@@ -97,11 +97,12 @@ def _on_drive(drive: Uf2Drive, image: Path) -> FlashableBoard:
 
 def _by_tool(job: Job, application: Application, flashing: Flashing, image: Path) -> Boards:
     """The boards that are attached by USB, for the tool of the family."""
+    tools = load_tools(job.request.roots, Diagnostics())
+    where = Surroundings.here(cache_folder())
+    flashing = flash.usable(flashing, tools, where)
     reason, hint = flash.flash_problem(application, flashing, None)
     if reason:
         return Boards(problem=f"EPG cannot flash this target: {reason}", hint=hint)
-    tools = load_tools(job.request.roots, Diagnostics())
-    where = Surroundings.here(cache_folder())
     tool = tools.get(flashing.tool)
     program = flash.program_of(tool, where) if tool is not None else ""
     by_hand = flashing.by_hand or "connect its debug probe by USB"

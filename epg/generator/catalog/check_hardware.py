@@ -124,6 +124,7 @@ def check_family(node: YamlNode, platforms: Sequence[str], diagnostics: Diagnost
         _check_known("class", [started], texts_of(node, "classes"), diagnostics)
     for name in ("chip", "program", "unusable"):
         _check_expression(node.get("flash", name), diagnostics)
+    _check_expression(node.get("flash", "otherwise", "chip"), diagnostics)
 
 
 def _check_expression(node: YamlNode | None, diagnostics: Diagnostics) -> None:

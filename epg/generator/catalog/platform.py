@@ -134,7 +134,7 @@ class Flashing:
     ``chip`` and ``program`` find the chip and the name of the target in these facts, and ``unusable`` finds a message
     of a tool that has no USB.  ``restart`` makes a board that runs a program ready to be written, and ``leave`` starts
     its program again; they are empty if a board is always ready.  ``by_hand`` tells the user what to do with a board
-    that does not answer.
+    that does not answer.  ``otherwise`` is the way that is used if only its tool is on the computer.
     """
 
     tool: str
@@ -151,6 +151,7 @@ class Flashing:
     program: str
     unusable: str
     by_hand: str
+    otherwise: Flashing | None = None
 
 
 @dataclass(frozen=True)
@@ -202,13 +203,21 @@ def make_platform(node: YamlNode, folder: Path) -> Platform:
     return Platform(**values, family=None, added=())
 
 
+def _flashing(node: YamlNode) -> Flashing:
+    flashing = Flashing(**values_of(node, Flashing))
+    if "otherwise" not in node:
+        return flashing
+    other = values_of(node["otherwise"], Flashing)
+    return replace(flashing, otherwise=replace(flashing, **{key: other[key] for key in map_of(node, "otherwise")}))
+
+
 def make_family(node: YamlNode, folder: Path) -> Family:
     """The family that a checked ``family.yaml`` describes."""
     values = _values(node, folder, "family", Family) | {
         "tick_starts": text_of(node, "tick_starts", "class"),
         "start_otherwise": text_of(node, "tick_starts", "otherwise"),
         "usb": MappingProxyType({key: child.value for key, child in map_of(node, "usb").items()}),
-        "flash": Flashing(**values_of(node["flash"], Flashing)) if "flash" in node else None,
+        "flash": _flashing(node["flash"]) if "flash" in node else None,
     }
     return Family(**values)
 
