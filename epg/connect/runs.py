@@ -22,6 +22,7 @@ from epg.connect.run.simulate import SimulationRun, commands_of
 from epg.generator.check.configuration import Configuration
 from epg.generator.resolve.application import Application
 from epg.generator.source import Span
+from epg.generator.system import here
 
 START = 10.0
 """Seconds that a program gets to open its console."""
@@ -52,13 +53,9 @@ class Runs:
         }
 
     @property
-    def running(self) -> bool:
-        return any(activity.is_running for activity in self._activities.values())
-
-    @property
     def must_end(self) -> bool:
         """True while something runs that ends by itself, and that the user can expect to be completed."""
-        return self.running and not self._program.is_running
+        return any(activity.is_running for activity in self._activities.values() if activity is not self._program)
 
     def check_idle(self, beside: str = "") -> None:
         """Raises Refused while an activity runs, other than ``beside``."""
@@ -97,11 +94,22 @@ class Runs:
         self._questions[name] = {**asked, "wires": dict(wires)} if question is not None or wires else None
         return self._questions[name]
 
-    def start(self, job: Job, *, anyway: bool = False) -> None:
-        """Configures and builds ``job``.  Raises Refused while another activity runs."""
-        self.check_idle()
+    def start(self, job: Job, leave_program: Callable[[], None], *, anyway: bool = False) -> None:
+        """Configures and builds ``job``.  Raises Refused while another activity runs, other than a program.
+
+        If the system locks the program's file, it ends first, after ``leave_program``, which ends a connection with it.
+        """
+        self.check_idle(beside="program")
         self._build = Build(self._changed)
-        self._build.start(job, anyway=anyway)
+        self._build.start(job, anyway=anyway, first=lambda: self._unlock_program(leave_program))
+
+    def _unlock_program(self, leave: Callable[[], None]) -> str:
+        if not (here.LOCKS_PROGRAMS and self._program.is_running):
+            return ""
+        name = Path(self._program.shown["program"]).name
+        why = f"stopped '{name}', because Windows does not let a running program be replaced"
+        leave()
+        return self._program.stop(why)
 
     def simulate(self, simulation: Simulation, *, anyway: bool = False) -> None:
         """Builds and runs a simulation.  Raises Refused while another activity runs."""
@@ -200,14 +208,11 @@ class Runs:
     @property
     def ends_program(self) -> bool:
         """True if :meth:`cancel` ends the program that runs."""
-        return self._program.is_running and not self._comparison.is_running
+        return self._program.is_running and not self.must_end
 
     def cancel(self) -> None:
-        """Cancels the running activity; of a program and its comparison, the comparison."""
-        if self._comparison.is_running:
-            self._comparison.cancel()
-        else:
-            self._cancel_all()
+        """Cancels the running activity; of a program and what runs beside it, the latter."""
+        self._cancel_all(beside="program" if self.must_end else "")
 
     def close(self) -> None:
         """Cancels all activities, and waits at most 10 s for their ends."""
@@ -215,9 +220,9 @@ class Runs:
         for activity in self._activities.values():
             activity.wait(10)
 
-    def _cancel_all(self) -> None:
-        for activity in self._activities.values():
-            if activity.is_running:
+    def _cancel_all(self, beside: str = "") -> None:
+        for name, activity in self._activities.items():
+            if activity.is_running and name != beside:
                 activity.cancel()
 
     def forget(self) -> None:

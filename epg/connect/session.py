@@ -343,12 +343,12 @@ class Session:
             self._publish()
 
     def _generate(self, body: Body) -> None:
-        self._check_ready()
+        self._check_ready(beside="program")
         self._save_project()
         anyway = boolean(body, "anyway")
         if self._ask(text(body, "run", ""), anyway=anyway) is None:
             self._save({})
-            self.runs.start(self._opened().job, anyway=anyway)
+            self.runs.start(self._opened().job, self._leave_program, anyway=anyway)
 
     def _simulate(self, body: Body) -> None:
         """Builds the target for this computer, and runs it through a scenario in simulated time.
@@ -390,13 +390,15 @@ class Session:
         self.runs.run_program(text(body, "path"), text(body, "run", ""), console=self.without_console is None)
 
     def _cancel(self, body: Body) -> None:
-        """Cancels the running activity.
-
-        The connection with a program ends first, so that the page does not report a lost target.
-        """
-        if self.runs.port and self.runs.ends_program:
-            self.live.leave(Path(self.runs.port))
+        """Cancels the running activity."""
+        if self.runs.ends_program:
+            self._leave_program()
         self.runs.cancel()
+
+    def _leave_program(self) -> None:
+        """Ends the connection with the program that will end, so that the page does not report a lost target."""
+        if self.runs.port:
+            self.live.leave(Path(self.runs.port))
 
     def _flash(self, body: Body) -> None:
         """Without "board": looks for boards.  With it: writes the last product to this board."""

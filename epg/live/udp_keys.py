@@ -9,6 +9,7 @@ A key is 128 bits.  People write it as 32 hexadecimal digits.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 from pathlib import Path, PurePath
@@ -70,3 +71,9 @@ def keep_key(path: PurePath, text: str) -> None:
         new.replace(file)
     except OSError as error:
         raise PortError(f"the key of {path} cannot be kept: {error}", f"look at {file.parent}") from error
+
+
+def forget_key(path: PurePath) -> None:
+    """Removes the key of this port, if there is one."""
+    with contextlib.suppress(OSError):  # the next key replaces it
+        file_of(path).unlink()

@@ -6,12 +6,14 @@ from __future__ import annotations
 import os
 import shutil
 import signal
-from pathlib import Path
+from pathlib import Path, PurePath
 from urllib.parse import quote
 
 import pytest
 
 from epg.generator.system import here
+from epg.live.udp import PortLocked, UdpPort
+from epg.live.udp_keys import kept_key
 from tests.connect.builds import processes
 from tests.connect.page import Denied, Page, serving, session_of
 from tests.connect.robots import new_project
@@ -48,7 +50,7 @@ def test_a_program_runs_until_it_is_stopped(built: Path, tmp_path: Path, monkeyp
         assert page.state()["program"]["state"] == "idle" and not processes(built)
         page.post("run", path=product["path"], run=ask["key"])
         page.until(lambda state: state["program"]["state"] == "running")
-        for action in ("generate", "simulate", "run"):
+        for action in ("simulate", "run"):
             with pytest.raises(Denied, match="a program is running") as refusal:
                 page.post(action, path=product["path"])
             assert refusal.value.status == 409
@@ -77,21 +79,73 @@ def test_a_program_has_a_socket_where_there_are_no_terminals(
     built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("EPG_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
     monkeypatch.setattr(here, "HAS_TERMINALS", False)
+    keys = tmp_path / "config/epg/keys"
+    seen = set()
     with serving(session_of(built)) as page:
         (product,) = generate(page)["products"]
-        for _ in range(2):  # another socket each time; the command is the same
+        for _ in range(2):  # another socket and key each time; the command is the same
             run(page, product["path"])
             state = page.until(lambda state: state["program"]["port"])
             port = state["program"]["port"]
             assert state["live"]["ports"][0] == {"path": port, "device": "the program that runs"}
             assert port.startswith("udp:127.0.0.1:") and not port.endswith(":0")
+            assert {each.stat().st_mode & 0o777 for each in keys.iterdir()} == {0o600}
+            seen.add(kept_key(PurePath(port)))
+            with monkeypatch.context() as other_user:
+                other_user.setenv("XDG_CONFIG_HOME", str(tmp_path / "other"))
+                with pytest.raises(PortLocked, match=f"{port} needs a key"):
+                    UdpPort(PurePath(port))
             page.post("live/connect", path=port)
             assert page.state()["live"]["target"]["matches"]
             page.post("cancel")
             state = page.until(lambda state: state["program"]["state"] != "running")
             assert (state["program"]["state"], state["live"]["problem"]) == ("cancelled", None)
-            assert state["program"]["ask"] is None
+            assert state["program"]["ask"] is None and not list(keys.iterdir())
+    assert len(seen) == 2 and None not in seen
+
+
+def change(built: Path) -> None:
+    """Changes the program."""
+    source = next(built.rglob("xxsubmod.c"))
+    source.write_text(source.read_text() + f"\nint changed_{source.stat().st_size};\n")
+
+
+def test_a_build_runs_beside_a_program(built: Path) -> None:
+    with serving(session_of(built)) as page:
+        (product,) = generate(page)["products"]
+        before = Path(product["path"]).read_bytes()
+        run(page, product["path"])
+        page.until(lambda state: state["program"]["state"] == "running")
+        change(built)
+        assert generate(page)["state"] == "done" and Path(product["path"]).read_bytes() != before
+        change(built)
+        page.generate()
+        page.post("cancel")
+        state = page.until(lambda state: state["build"]["state"] != "running")
+        assert (state["build"]["state"], state["program"]["state"]) == ("cancelled", "running")
+        page.post("cancel")
+        page.until(lambda state: state["program"]["state"] == "cancelled")
+
+
+def test_a_build_ends_a_program_whose_file_the_system_locks(built: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(here, "LOCKS_PROGRAMS", True)
+    with serving(session_of(built)) as page:
+        (product,) = generate(page)["products"]
+        run(page, product["path"])
+        state = page.until(lambda state: state["program"]["state"] == "running")
+        until(Path(state["program"]["port"]).exists)
+        page.post("live/connect", path=state["program"]["port"])
+        change(built)
+        assert generate(page)["state"] == "done"
+        why = "stopped 'robot_host', because Windows does not let a running program be replaced"
+        assert page.json("api/log?of=build&from=0")["lines"][0] == why
+        state = page.state()
+        (message,) = state["program"]["messages"]
+        assert (state["program"]["state"], message["message"]) == ("cancelled", why)
+        assert (state["live"]["target"], state["live"]["lost"], state["live"]["problem"]) == (None, None, None)
+        assert "interrupted" in page.json("api/log?of=program&from=0")["lines"][0], "it has switched its outputs off"
 
 
 def test_a_program_that_fails_says_why(built: Path) -> None:

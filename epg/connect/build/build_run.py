@@ -7,6 +7,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import ClassVar
 
 from epg.connect.activity import Activity, Outcome
@@ -34,11 +35,16 @@ class Build(Activity):
 
     more: ClassVar = {"products": (), "can_try": False}
 
-    def start(self, job: Job, *, anyway: bool = False) -> None:
-        """Starts the build of ``job``; ``anyway`` as for :func:`~epg.connect.build.plan.make_plan`."""
-        self.begin(lambda: self._build(job, anyway))
+    def start(self, job: Job, *, anyway: bool = False, first: Callable[[], str] = str) -> None:
+        """Starts the build of ``job``; ``anyway`` as for :func:`~epg.connect.build.plan.make_plan`.
 
-    def _build(self, job: Job, anyway: bool) -> Outcome:
+        ``first`` is done before it, and returns a line for the log, or an empty text.
+        """
+        self.begin(lambda: self._build(job, anyway, first))
+
+    def _build(self, job: Job, anyway: bool, first: Callable[[], str]) -> Outcome:
+        if said := first():
+            self.read(said)
         outcome, made = build(self, job, anyway=anyway)
         runs = _runs_here(job)
         listed = [{"path": str(each.path), "what": each.what, "runs": runs} for each in made]

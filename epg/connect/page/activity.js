@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What builds, simulations and other runs have in common: consent, progress, messages and log. Only one runs at a
-// time; a comparison may run beside the program that it compares.
+// time; a build and a comparison may run beside a program.
 
 import { copyButton } from "./copy.js";
 import { openDialog } from "./dialog.js";

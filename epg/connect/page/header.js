@@ -47,17 +47,22 @@ export function header(state) {
       button("Redo", "Ctrl+Y", draft.can_redo, () => attempt("redo")),
     ),
     button("Save", "Ctrl+S", draft.changed && !draft.conflict, () => attempt("save")),
-    running(state)
-      ? h("button", { key: "generate", class: "primary", onclick: () => attempt("cancel") }, STOP[running(state)])
-      : [
-          h("button", { key: "simulate", title: "Run it on this computer", onclick: simulate }, "Simulate"),
-          h(
-            "button",
-            { key: "generate", class: "primary", title: "Build the firmware", onclick: generate },
-            "Generate",
-          ),
-        ],
+    runButtons(state),
     close,
+  ];
+}
+
+// A build may run beside a program: only then it does not take the place of the button that ends what runs.
+/** @param {State} state */
+function runButtons(state) {
+  const now = running(state);
+  const end = (attributes) => h("button", { ...attributes, onclick: () => attempt("cancel") }, STOP[now]);
+  if (now && now !== "program") return end({ key: "generate", class: "primary" });
+  return [
+    now
+      ? end({ key: "simulate" })
+      : h("button", { key: "simulate", title: "Run it on this computer", onclick: simulate }, "Simulate"),
+    h("button", { key: "generate", class: "primary", title: "Build the firmware", onclick: generate }, "Generate"),
   ];
 }
 

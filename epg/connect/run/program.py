@@ -7,21 +7,27 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import re
-from pathlib import Path
+import secrets
+from pathlib import Path, PurePath
 from typing import ClassVar
 
 from epg.connect.activity import Activity, Outcome
 from epg.connect.build.build_messages import BuildMessage
+from epg.connect.build.process import GRACE
 from epg.generator.system import here
+from epg.live.port import PortError
 from epg.live.udp import PREFIX, is_udp
+from epg.live.udp_keys import file_of, forget_key, keep_key
+from epg.live.udp_seal import KEY
 
 LONGEST = 86400
 """The longest time in seconds that a program runs: a program that is no ROS 2 node needs a duration."""
 ANY_SOCKET = Path("udp:127.0.0.1:0")
-"""A socket that the system chooses when the program starts."""
-_LISTENS = re.compile(r": the console listens on (udp:\S+)$")
+"""A socket that the system chooses when the program starts.  Each run has another key for it."""
+_LISTENS = re.compile(r": the console listens on (udp:127\.0\.0\.1:\d+)$")
 _TAIL = 5
 
 
@@ -29,6 +35,8 @@ class ProgramRun(Activity):
     """One run of a program.  Its state has the ``program``, and the ``port`` of its console, or an empty text."""
 
     more: ClassVar = {"program": "", "port": "", "can_try": False}
+    _key = _why = ""
+    _kept: tuple[PurePath, ...] = ()
 
     def start(self, program: Path, port: Path | None) -> None:
         """``port`` is that of :func:`port_of`; None: the program has no console."""
@@ -37,12 +45,28 @@ class ProgramRun(Activity):
         self.shown |= {"program": str(program), "port": "" if port == ANY_SOCKET else str(port or "")}
         self.begin(lambda: self._run(program, port))
 
+    def stop(self, why: str) -> str:
+        """Ends the program, and waits for the end.  Shows the reason, and returns it."""
+        self._why = why
+        self.cancel()
+        self.wait(3 * GRACE)
+        return why
+
     def _run(self, program: Path, port: Path | None) -> Outcome:
-        status = self.run(
-            "run", command_of(program, port), program.parent, os.environ, line=self._find_socket, bound=True
-        )
+        try:
+            if port == ANY_SOCKET:
+                self._key = secrets.token_hex(KEY)
+                self._keep(_key_of(program))
+            status = self.run(
+                "run", command_of(program, port), program.parent, os.environ, line=self._find_socket, bound=True
+            )
+        except PortError as problem:
+            return Outcome("failed", [BuildMessage("error", str(problem), hint=problem.hint, id="run-failed")])
+        finally:
+            for path in self._kept:
+                forget_key(path)
         if self.is_cancelled:
-            return Outcome("cancelled")
+            return Outcome("cancelled", [BuildMessage("warning", self._why)] if self._why else ())
         if status == 0:
             return Outcome("done")
         said = [line for line in self.lines(0) if line.strip()][-_TAIL:]
@@ -53,9 +77,17 @@ class ProgramRun(Activity):
         """Reads a line of output, which can tell the socket of the console."""
         self.read(line)
         found = _LISTENS.search(line)
-        if found is not None and not self.shown["port"]:
+        if found is not None and self._key and not self.shown["port"]:
+            try:
+                self._keep(PurePath(found[1]))
+            except PortError as problem:  # the page asks for the key
+                self.read(str(problem))
             self.shown["port"] = found[1]
             self._changed()
+
+    def _keep(self, path: PurePath) -> None:
+        keep_key(path, self._key)
+        self._kept += (path,)
 
     @property
     def console(self) -> Path | None:
@@ -69,10 +101,15 @@ def command_of(program: Path, port: Path | None) -> tuple[str, ...]:
     if port is None:
         console = []
     elif is_udp(port):
-        console = [f"--console-udp={str(port).removeprefix(PREFIX)}"]
+        console = [f"--console-udp={str(port).removeprefix(PREFIX)}", f"--console-key={file_of(_key_of(program))}"]
     else:
         console = [f"--console-pty={port}"]
     return (str(program), *console, "--realtime", f"--duration={LONGEST}")
+
+
+def _key_of(program: Path) -> PurePath:
+    """The name under which the key is kept until the program knows its socket.  It is the same in each run."""
+    return PurePath(f"run:{hashlib.sha256(os.fsencode(program)).hexdigest()[:16]}")
 
 
 def port_of(program: Path) -> Path:

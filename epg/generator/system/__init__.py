@@ -35,6 +35,8 @@ class OperatingSystem(Protocol):
     """A path with ``NOT_IN_PROJECTS`` is not that of a project.
 
     ``SHARES_PORTS``: the option SO_REUSEADDR only lets a program have a port again at once.
+
+    ``LOCKS_PROGRAMS``: the file of a program that runs cannot be replaced.
     """
 
     NAME: str
@@ -42,6 +44,7 @@ class OperatingSystem(Protocol):
     NOT_IN_PROJECTS: str
     SHARES_PORTS: bool
     HAS_TERMINALS: bool
+    LOCKS_PROGRAMS: bool
 
     def caches(self) -> Path:
         """The folder for caches of all programs of the user."""

@@ -16,6 +16,7 @@ NAME = "macos" if sys.platform == "darwin" else "linux"
 NOT_IN_PROJECTS = r'[#<>?:;"\\]'
 SHARES_PORTS = True
 HAS_TERMINALS = True
+LOCKS_PROGRAMS = False
 NICE = 10
 """The niceness of a modest program and of all that it starts."""
 MOUNTS = Path("/proc/self/mounts")

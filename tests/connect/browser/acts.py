@@ -10,6 +10,8 @@ from typing import Any
 from tests import waiting
 from tests.live.target import LEASE
 
+HOLD = 700
+"""Milliseconds for which a user holds a button."""
 NEWEST = "(async () => (await import(new URL('live_events.js', location))).live.times.at(-1) ?? null)()"
 """The newest time of the target on a live page, in seconds."""
 
@@ -81,6 +83,31 @@ def drive(act: Callable[[], None], is_driven: Callable[[], bool], browser: Any, 
             return
         assert late(browser, *others) > before + LEASE, "the robot is not enabled, and the computer was not late"
     raise AssertionError("the robot is not enabled")
+
+
+def enable(page: Any, *others: int) -> None:
+    """Holds the button while another element has the focus; a click alone must have no effect."""
+    button = page.get_by_role("button", name="Enable (hold)")
+    button.click()
+    let_pass(page.evaluate, HOLD / 1000)
+    page.get_by_role("textbox", name="pan_subscriber").focus()
+    assert page.get_by_role("tab", name="Live ○ disabled").is_visible(), "a click is too short"
+    enabled = page.get_by_role("tab", name="Live ● enabled")
+    drive(lambda: button.click(delay=HOLD), enabled.is_visible, page.context.browser, *others)
+
+
+def generate(page: Any) -> None:
+    """Begins the first build in a folder, and agrees to its commands."""
+    page.get_by_role("button", name="Generate", exact=True).click()
+    page.get_by_role("dialog", name="Run these commands?").get_by_role("button", name="Run").click()
+
+
+def run_program(page: Any, name: str) -> None:
+    """Runs a product in real time, and agrees to its command."""
+    panel = page.get_by_role("tabpanel")
+    panel.get_by_role("button", name=f"Run {name} in real time").click()
+    page.get_by_role("dialog").get_by_role("button", name="Run", exact=True).click()
+    panel.get_by_text(f"{name} runs in real time.").wait_for()
 
 
 def until(page: Any, expression: str, seconds: float = waiting.PATIENCE) -> None:

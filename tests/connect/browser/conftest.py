@@ -7,6 +7,7 @@ from __future__ import annotations
 import secrets
 import shutil
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from functools import partialmethod
 from pathlib import Path
 from typing import Any
@@ -34,19 +35,29 @@ def _text_to_see(page: Any, everywhere: Callable[..., Any], text: Any, **how: An
     return everywhere(page, text, **how).and_(page.locator(":not(#said)"))
 
 
-@pytest.fixture(scope="session")
-def launch() -> Iterator[Callable[[], Any]]:
-    """Starts a browser."""
+@contextmanager
+def chromium() -> Iterator[Callable[[], Any]]:
+    """Starts a browser.  Raises Missing."""
     try:
         from playwright.sync_api import Page, sync_playwright
     except ImportError:
-        pytest.skip("playwright is not installed: pip install playwright")
+        raise Missing("playwright is not installed: pip install playwright") from None
     program = next(filter(None, map(shutil.which, NAMES)), None)
     if program is None:
-        pytest.skip("Chromium is not installed: sudo apt install chromium")
+        raise Missing("Chromium is not installed: sudo apt install chromium")
     with sync_playwright() as playwright, pytest.MonkeyPatch.context() as patch:
         patch.setattr(Page, "get_by_text", partialmethod(_text_to_see, Page.get_by_text))
         yield lambda: playwright.chromium.launch(executable_path=program, args=FLAGS)
+
+
+@pytest.fixture(scope="session")
+def launch() -> Iterator[Callable[[], Any]]:
+    with ExitStack() as stack:
+        try:
+            found = stack.enter_context(chromium())
+        except Missing as problem:
+            pytest.skip(str(problem))
+        yield found
 
 
 @pytest.fixture(scope="session")
@@ -56,8 +67,8 @@ def browser(launch: Callable[[], Any]) -> Iterator[Any]:
     browser.close()
 
 
-@pytest.fixture
-def open_page(browser: Any) -> Iterator[Callable[..., Any]]:
+@contextmanager
+def pages_of(browser: Any) -> Iterator[Callable[..., Any]]:
     """Opens an address in its own browser context; the arguments are Playwright's for a context."""
     contexts: list[Any] = []
     wrong: list[str] = []
@@ -93,6 +104,12 @@ def open_page(browser: Any) -> Iterator[Callable[..., Any]]:
     for context in contexts:
         context.close()
     assert wrong == []
+
+
+@pytest.fixture
+def open_page(browser: Any) -> Iterator[Callable[..., Any]]:
+    with pages_of(browser) as found:
+        yield found
 
 
 class Project:

@@ -19,8 +19,8 @@ from typing import Any
 from epg.generator.bootstrap import ensure
 from tests.doubles.toolchain import arm_gcc, pico_sdk
 
-from .acts import let_pass, until
-from .conftest import FLAGS, NAMES, copy_jiwy
+from .acts import generate, let_pass, until
+from .conftest import chromium, copy_jiwy
 from .served import ROOT, Served
 
 PICTURES = ROOT / "docs" / "pictures"
@@ -30,17 +30,14 @@ SIZE = {"width": 1280, "height": 800}
 
 def take_pictures(folder: Path = PICTURES) -> None:
     """Writes ``connect-*.png``.  Raises Missing without the Pico SDK or its compiler."""
-    from playwright.sync_api import sync_playwright
-
     pico_sdk()
     arm_gcc()
     # The names in the pictures must be the same each time.
     place = Path(tempfile.gettempdir()) / "robots"
     shutil.rmtree(place, ignore_errors=True)
     model = Path(shutil.copytree(ROOT / "examples/jiwy/model", place / "camera_export"))
-    program = next(filter(None, map(shutil.which, NAMES)))
-    with sync_playwright() as playwright, Served(model) as epg:
-        browser = playwright.chromium.launch(executable_path=program, args=FLAGS)
+    with chromium() as launch, Served(model) as epg:
+        browser = launch()
         page = browser.new_context(viewport=SIZE, reduced_motion="reduce").new_page()
         page.goto(epg.address)
         _start(page, folder)
@@ -110,8 +107,7 @@ def _component(page: Any, folder: Path) -> None:
 
 
 def _build(page: Any, epg: Served, folder: Path) -> None:
-    page.get_by_role("button", name="Generate", exact=True).click()
-    page.get_by_role("dialog", name="Run these commands?").get_by_role("button", name="Run").click()
+    generate(page)
     page.locator(".outcome.done").wait_for(timeout=600_000)
     _take(page, folder, "build")
 

@@ -11,7 +11,7 @@ import pytest
 
 from tests.connect.robots import new_project
 
-from .acts import field, until
+from .acts import field, run_program, until
 from .conftest import Project
 from .served import Served
 
@@ -78,10 +78,11 @@ def test_generates_shows_errors_and_cancels(jiwy: Project, open_page: Open) -> N
     until(page, f"document.querySelector('.log pre').textContent.split('\\n').length >= {build['lines']}")
 
     # The program runs in real time until it is stopped, and is downloaded.
-    panel.get_by_role("button", name="Run jiwy_host in real time").click()
-    page.get_by_role("dialog").get_by_role("button", name="Run", exact=True).click()
-    panel.get_by_text("jiwy_host runs in real time.").wait_for()
+    run_program(page, "jiwy_host")
     assert panel.get_by_role("button", name="Run jiwy_host in real time").is_disabled()
+    generate.click()  # beside the program
+    page.get_by_role("button", name="Cancel", exact=True).wait_for()
+    page.get_by_role("button", name="End program", exact=True).wait_for(timeout=PATIENT)
     page.get_by_role("button", name="End program", exact=True).click()
     panel.get_by_text("jiwy_host was stopped.").wait_for(timeout=PATIENT)
     panel.get_by_text("Output,").click()

@@ -14,14 +14,13 @@ import pytest
 from tests.live.target import LATE, LEASE, Target
 from tests.waiting import until
 
-from .acts import drive, let_pass
+from .acts import HOLD, enable, let_pass
 from .acts import until as until_page
 from .axe import violations
 from .served import ROOT, Served
 
 LIVE = (ROOT / "docs" / "live.md").read_text(encoding="utf-8")
 Open = Callable[..., Any]
-HOLD = 700  # milliseconds
 PATIENT = 120_000  # milliseconds for a build on a computer with high load
 
 
@@ -38,17 +37,6 @@ def page(jiwy: Any, open_page: Open, target: Target) -> Iterator[Any]:
     found.get_by_role("tab", name="Live ○ disabled").wait_for()
     yield found
     jiwy.epg.post("live/disconnect")
-
-
-def enable(page: Any) -> None:
-    """Holds the button while another element has the focus; a click alone must have no effect."""
-    button = page.get_by_role("button", name="Enable (hold)")
-    button.click()
-    let_pass(page.evaluate, HOLD / 1000)
-    page.get_by_role("textbox", name="pan_subscriber").focus()
-    assert page.get_by_role("tab", name="Live ○ disabled").is_visible(), "a click is too short"
-    enabled = page.get_by_role("tab", name="Live ● enabled")
-    drive(lambda: button.click(delay=HOLD), enabled.is_visible, page.context.browser)
 
 
 def stopped(page: Any) -> str:
