@@ -75,9 +75,9 @@ def question_about(
         return None
     programs = {step.command[0] for step in plan.steps} | {plan.build_program}
     programs |= {command[0] for command in after}
-    key = json.dumps(
-        [os.path.realpath(plan.source), os.path.realpath(plan.build), sorted(programs), _number(plan.source), *after]
-    )
+    names = sorted({os.path.normcase(program) for program in programs})  # CMake's cache has "/" on Windows
+    folders = (os.path.realpath(plan.source), os.path.realpath(plan.build))
+    key = json.dumps([*folders, names, _number(plan.source), *after])
     question = Question(
         plan.steps[0].folder,
         tuple(_shown(command) for command in (*(step.command for step in plan.steps), *after)),
