@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import csv
+import json
 import os
 import re
 import shutil
@@ -18,17 +19,32 @@ import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
-from pathlib import Path
+from pathlib import Path, PurePath
+from typing import Any
 
 import yaml
 
+from epg.live.udp import PortLocked, UdpPort
 from tests.checkout import ROOT
-from tests.connect.page import Page
+from tests.cmake.project import copy_jiwy
+from tests.connect.browser import acts
+from tests.connect.browser.conftest import chromium, pages_of
 from tests.connect.robots import new_project, write_model
-from tests.connect.started import generate
 from tests.doubles.toolchain import Missing, arm_gcc, node, pico_sdk, rp2040js
 from tests.platforms.pico.closed_loop.board import Board, image
 from tests.platforms.pico.xrce.line import Line
+from tests.system.test_flash import (
+    FIRST,
+    OPENOCD,
+    PICOTOOL,
+    PROBE,
+    PROGRAMMER,
+    PROGRAMMER_PLACE,
+    SECOND,
+    SYSTEM,
+    Bench,
+    stand_in,
+)
 from tests.twenty_sim.generate import generate_from
 from tests.waiting import read_until, until
 from tests.windows.computer import HERE, MISSING, Computer, is_here, windows
@@ -36,6 +52,8 @@ from tests.windows.computer import HERE, MISSING, Computer, is_here, windows
 TARGETS = ("host", "rpi_pico2_freertos", "nucleo_h743zi_bare_metal", "rpi_pico_zephyr")
 """The targets for which sources are generated."""
 
+PATIENT = 600
+"""Seconds for a build under Wine."""
 INSTALL = "py -m pip install ."
 GET = "Get it: winget install BrechtSanders.WinLibs.POSIX.UCRT"
 PYTHON_TESTS = 1500
@@ -223,33 +241,110 @@ class Run:
         return text
 
     def page(self) -> str:
-        """The page of ``epg connect`` of Windows builds a program, runs it, and uses its console."""
+        """A user with Chromium of this computer and ``epg connect`` of Windows: from wires to a robot that moves."""
         project = self.work / "page"
         self.epg("new", "--target", "host_jiwy", "--model", "examples/jiwy/model", "--name", "robot", project)
         lists = project / "CMakeLists.txt"
         lists.write_text(lists.read_text().replace(" C CXX)", " C)"))  # Debian's compiler for C++ is not installed
         command = (self.computer.python, "-m", "epg", "connect", project, "--no-browser")
-        served = self.computer.start(*command, cwd=self.source)
-        assert served.stdout is not None
+        with chromium() as launch, self.computer.start(*command, cwd=self.source) as served:
+            assert served.stdout is not None
+            try:
+                address = next(match[0] for line in served.stdout if (match := re.search(r"http://127\S+#\S+", line)))
+                with pages_of(launch()) as opened:
+                    return self.used(opened(address), project, served.pid)
+            finally:
+                served.kill()
+
+    def keys(self) -> set[Path]:
+        """The keys of consoles by UDP; a program that was killed with its EPG leaves one."""
+        return {*(self.computer.prefix / "drive_c/users").glob("*/AppData/Roaming/epg/keys/*")}
+
+    def used(self, page: Any, project: Path, process: int) -> str:
+        """Connects a port, builds, runs, tunes and stops a robot on the page of ``process``."""
+        panel, patience, before = page.get_by_role("tabpanel"), 1000 * PATIENT, self.keys()
+        acts.field(page, "setpoint_pan").select_option("")
+        page.get_by_text("1 error", exact=True).wait_for()
+        acts.field(page, "setpoint_pan").select_option("pan_subscriber")
+        page.get_by_text("No problems", exact=True).wait_for()
+
+        acts.generate(page)
+        page.get_by_role("progressbar").wait_for()
+        page.get_by_role("button", name="Cancel", exact=True).click()
+        page.locator(".outcome.cancelled", has_text="Cancelled.").wait_for(timeout=patience)
+        page.get_by_role("button", name="Generate", exact=True).click()
+        page.locator(".outcome.done").wait_for(timeout=patience)
+
+        acts.run_program(page, "robot_host.exe")
+        page.get_by_role("tab", name="Live").click()
+        page.get_by_text("the program that runs").wait_for(timeout=patience)
+        port = PurePath(page.get_by_label("Port", exact=True).input_value())
         try:
-            address = next(match[0] for line in served.stdout if (match := re.search(r"http://127\S+#\S+", line)))
-            page = Page(address)
-            build = generate(page, 600)
-            if build["state"] != "done":
-                raise RuntimeError(build["messages"])
-            program = build["products"][0]["path"]
-            page.post("run", path=program, run=page.post("run", path=program)["program"]["ask"]["key"])
-            port = page.until(lambda state: state["program"]["port"])["program"]["port"]
-            page.post("live/connect", path=port)
-            target = page.state()["live"]["target"]
-            page.post("cancel")
-            ended = page.until(lambda state: state["program"]["state"] != "running")
-            said = page.json("api/log?of=program&from=0")["lines"]
+            UdpPort(port)
+            raise RuntimeError(f"{port} needs no key")
+        except PortLocked as locked:
+            said = str(locked)
+        page.get_by_role("button", name="Connect", exact=True).click()
+        page.get_by_role("button", name="Larger").click()
+        page.get_by_role("tab", name="Live ○ disabled").wait_for(timeout=patience)
+        acts.enable(page, process)
+        for name, value in (("Pan\\PID\\kp", "2.2"), ("pan_subscriber", "0.5")):
+            entry = page.get_by_role("textbox", name=re.compile(f"^{re.escape(name)}( |$)"))
+            entry.fill(value)
+            entry.press("Enter")
+        console = page.get_by_role("log", name="Console")
+        until(lambda: {"ok set", "ok setpoint"} <= set(console.inner_text().splitlines()), console.inner_text, PATIENT)
+        page.get_by_role("button", name="Stop robot").click()
+        page.get_by_role("tab", name="Live ○ disabled").wait_for(timeout=patience)
+        page.get_by_role("button", name="Smaller").click()
+
+        source = next(project.rglob("xxsubmod.c"))
+        source.write_text(source.read_text() + "\n")
+        page.get_by_role("button", name="Generate", exact=True).click()
+        stopped = panel.get_by_text("because Windows does not let a running program be replaced").first
+        stopped.wait_for(timeout=patience)
+        page.locator(".outcome.done").wait_for(timeout=patience)
+        said += f"; {stopped.inner_text()}"
+        panel.get_by_role("button", name="Run robot_host.exe in real time").click()  # it asks once
+        page.get_by_role("button", name="End program", exact=True).click()
+        panel.get_by_text("robot_host.exe was stopped.").wait_for(timeout=patience)
+        if new := self.keys() - before:
+            raise RuntimeError(f"keys stay: {new}")
+        return f"Chromium {page.context.browser.version}; {said}"
+
+    def flash(self) -> str:
+        """Programs in their usual places write images to boards.  They are stand-ins, which check their arguments."""
+        folder, drive = self.work / "flash", self.computer.prefix / "drive_c"
+        copy_jiwy(folder, "model")
+        (folder / "tools").mkdir()
+        bench = Bench(folder)
+        bench.system.write_text(SYSTEM)
+        picos = [{"serial": FIRST, "chip": "RP2040"}, {"serial": SECOND, "chip": "RP2350"}]
+        boards = {"picos": [{**pico, "bootsel": 1, "program": ""} for pico in picos], "broken": "", "no usb": False}
+        (folder / "tools/boards.json").write_text(json.dumps({**boards, "nucleos": [], "slow": 0}))
+        bench.build("leader", "follower", "third")
+        sdk = next((drive / "users").glob("*/AppData")).parent / ".pico-sdk"
+        places = {
+            "picotool": sdk / "picotool/2.2.0/picotool",
+            "openocd": sdk / "openocd/0.12.0+dev",
+            "STM32_Programmer_CLI": drive / "Program Files" / PROGRAMMER_PLACE,
+        }
+        for (name, place), text in zip(places.items(), (PICOTOOL, OPENOCD, PROGRAMMER), strict=True):
+            stand_in(folder / "tools", name, text, self.computer.scripts)
+            place.mkdir(parents=True, exist_ok=True)
+            shutil.copy(self.computer.scripts / "gcc.exe", place / f"{name}.exe")
+        (places["picotool"] / "picotoolConfig.cmake").touch()
+        try:
+            for number in range(2):
+                bench.change(nucleos=[{"probe": PROBE, "idcode": "10036450"}])
+                self.epg("flash", bench.system, *(("--target", "third") if number else ()))
+                if bench.written() != {FIRST: "leader_firmware", SECOND: "follower_firmware", PROBE: "third_firmware"}:
+                    raise RuntimeError(str(bench.boards))
+                shutil.rmtree(places["openocd"], ignore_errors=True)  # STM32CubeProgrammer takes its place
         finally:
-            served.kill()
-        if not target["matches"] or ended["program"]["state"] != "cancelled":
-            raise RuntimeError(f"{target} {ended['program']}")
-        return f"{program} ran with its console on {port}; it said {said[-1]}"
+            shutil.rmtree(sdk)
+            shutil.rmtree(drive / "Program Files/STMicroelectronics")
+        return f"{len(bench.calls())} commands of {', '.join({call[0]: '' for call in bench.calls()})}"
 
     @staticmethod
     def sent(*lines: str) -> list[str]:
@@ -397,7 +492,8 @@ class Run:
         report.step("the simulation of a system", self.cell)
         report.step("ports of the registry", self.ports)
         report.step("programs and drives of Windows", self.system)
-        report.step("epg connect builds and runs", self.page)
+        report.step("epg connect in Chromium", self.page)
+        report.step("epg flash with the tools' usual places", self.flash)
         report.step("epg live COM7 for 60 s", self.live)
         report.step("a lease, a recording, its replay and a motor at COM7", self.session)
         report.step("the screen of epg live", self.screen)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs a tool of mingw-w64 for forward.c.  The argument is the beginning of the names of the call's files: NAME.arguments
+# Runs a tool of mingw-w64 for forward.c, or the program of this name beside this file.  The argument is the beginning of the names of the call's files: NAME.arguments
 # holds the tool, the working folder and the arguments, each with a final 0; NAME.output and NAME.status are written.
 PATH=/usr/bin:/bin
 export LC_ALL=C.UTF-8
@@ -27,6 +27,8 @@ for word in "${words[@]:2}"; do
     *) arguments+=("$(linux "$word")") ;;
     esac
 done
-cd "$(linux "${words[1]}")" && "x86_64-w64-mingw32-$tool" "${arguments[@]}" >"$job.output" 2>&1 </dev/null
+program="${job%/jobs/*}/$tool" # a stand-in
+[[ -x $program ]] || program="x86_64-w64-mingw32-$tool"
+cd "$(linux "${words[1]}")" && "$program" "${arguments[@]}" >"$job.output" 2>&1 </dev/null
 echo "$?" >"$job.new"
 mv "$job.new" "$job.status"
