@@ -10,7 +10,7 @@ import sys
 import termios
 import tty
 
-_SEQUENCE = re.compile(r"\x1b([[O][0-?]*[ -/]*[@-~]?)?")  # of an arrow or a function key: ECMA-48, 5.4
+_SEQUENCE = re.compile(r"\x1b([\[O][0-?]*[ -/]*[@-~]?)?")  # of an arrow or a function key: ECMA-48, 5.4
 
 
 class PosixKeyboard:
