@@ -138,6 +138,11 @@ class Run:
     def epg_here(self, *words: str | Path) -> str:
         return here(sys.executable, "-m", "epg", *map(str, words))
 
+    @property
+    def program(self) -> Path:
+        """JIWY, after :meth:`main_job`."""
+        return next((self.work / "Ninja jiwy").glob("**/jiwy_host.exe"))
+
     def generated(self, target: str) -> str:
         """Generates the sources of JIWY for ``target``, on both systems."""
         words = ["generate", "jiwy", "--tcf", f"{target}_jiwy.tcf", "--model", "examples/jiwy/model"]
@@ -213,9 +218,8 @@ class Run:
         return f"{same_folders(*folders, {self.source: ROOT})} files are equal"
 
     def simulated(self) -> str:
-        program = next((self.work / "Ninja jiwy").glob("**/jiwy_host.exe"))
         return self.epg(
-            "simulate", program, "--scenario", "examples/jiwy/tracking.yaml", "--output", self.work / "simulated"
+            "simulate", self.program, "--scenario", "examples/jiwy/tracking.yaml", "--output", self.work / "simulated"
         ).splitlines()[-1]
 
     def ports(self) -> str:
@@ -234,8 +238,7 @@ class Run:
         letter.unlink(missing_ok=True)
         letter.symlink_to(drive)
         expect(self.computer.run("reg", "add", r"HKLM\Software\Wine\Drives", "/v", "u:", "/d", "floppy", "/f"))
-        program = next((self.work / "build Ninja").glob("**/jiwy_host.exe"))
-        text = expect(self.computer.run(self.computer.python, HERE / "use_system.py", program)).strip()
+        text = expect(self.computer.run(self.computer.python, HERE / "use_system.py", self.program)).strip()
         if "RPI-RP2 is U:\\" not in text:
             raise RuntimeError(text)
         return text
@@ -421,7 +424,7 @@ class Run:
         if said.count("csv ") < 200 or "stat enabled=0" not in said:
             raise RuntimeError(said)
         found = self.epg("identify", rows, "--duty", motor[0], "--position", motor[1], "--output", picture)
-        replayed = self.epg("replay", run, next((self.work / "Ninja jiwy").glob("**/jiwy_host.exe")))
+        replayed = self.epg("replay", run, self.program)
         return f"{found.strip().splitlines()[0]}; {replayed.strip().splitlines()[-1]}"
 
     def pico(self) -> str:
@@ -440,14 +443,14 @@ class Run:
             raise RuntimeError(text)
         if times != list(range(len(times))) or len(times) < 100:
             raise RuntimeError(f"{len(times)} rows, but not one for each cycle")
-        replayed = self.epg("replay", run, next((self.work / "build Ninja").glob("**/jiwy_host.exe")))
+        replayed = self.epg("replay", run, self.program)
         return f"{len(times)} cycles, {text.count('ok ')} answers, none lost; {replayed.strip().splitlines()[-1]}"
 
     def screen(self) -> str:
         """Keys at the screen of ``epg live``.  The console of Wine is a terminal of this computer."""
         ours, theirs = os.openpty()
         command = ("wine", windows(self.computer.python), "-m", "epg", "live", "COM7")
-        with self.com7(self.work / "linux_build/jiwy_host"):
+        with self.com7(self.work / "linux_jiwy/jiwy_host"):
             ends = {"stdin": theirs, "stdout": theirs, "stderr": theirs}
             program = subprocess.Popen(command, cwd=self.source, env=self.computer.environment, **ends)
             os.close(theirs)
