@@ -155,9 +155,14 @@ def flash_problem(application: Application, flashing: Flashing, robot: Robot | N
 
 
 def board_of(device: UsbDevice, flashing: Flashing) -> tuple[tuple[str, ...], str, str]:
-    """The arguments that choose an attached board, its serial number, and the board in messages."""
+    """The arguments that choose an attached board, its serial number, and the board in messages.
+
+    There are none for a board of which neither a serial number nor a place is known: the tool takes the only one.
+    """
     if device.id not in flashing.without_serial:
         return _chosen(flashing.by_serial, {"serial": device.serial}), device.serial, device.serial
+    if not device.bus:
+        return (), "", "in BOOTSEL mode"
     place = {"bus": device.bus, "address": device.address}
     return _chosen(flashing.by_place, place), "", f"at bus {device.bus}, address {device.address}"
 
@@ -194,7 +199,7 @@ def _board(
     if len(rivals) > 1:
         reason = f"the system has {len(rivals)} targets for such boards"
     elif devices is None:
-        reason = "EPG lists attached boards on Linux only"
+        reason = "EPG lists attached boards on Linux and Windows only"
     else:
         reason = f"{len(devices) or 'no'} fitting boards are attached"
     hint = f"write '{flashing.named_by}: <serial number>' for it in the system file{_listed(devices, flashing)}"
@@ -211,9 +216,11 @@ def _listed(devices: Sequence[UsbDevice] | None, flashing: Flashing) -> str:
     if not devices:
         return ""
     shown = [
-        f"one in BOOTSEL mode at bus {device.bus}, address {device.address}"
+        "one in BOOTSEL mode" + (f" at bus {device.bus}, address {device.address}" if device.bus else "")
         if device.id in flashing.without_serial
         else f"{device.serial} ({device.product})"
+        if device.product
+        else device.serial
         for device in devices
     ]
     return f"; attached are {', '.join(shown)}"

@@ -376,16 +376,20 @@ def test_a_failure_while_writing(bench: Bench, capfd: pytest.CaptureFixture[str]
     assert "not permitted" in output.err and set(bench.written()) == {FIRST}
 
 
-def test_boards_without_names(bench: Bench, capfd: pytest.CaptureFixture[str]) -> None:
+def test_boards_without_names(bench: Bench, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     """One target and one fitting board need no serial number."""
     bench.edit(f", serial: {FIRST}", "")
     bench.edit(f", probe: {PROBE}", "")
     bench.build("leader", "follower", "third")
     run(bench, "--target", "third", status=1)
-    assert "EPG lists attached boards on Linux only" in capfd.readouterr().err
+    assert "EPG lists attached boards on Linux and Windows only" in capfd.readouterr().err
+    windows = [f"USB\\VID_0483&PID_374E\\{PROBE}", r"USB\VID_0483&PID_374E&MI_00\6&2B1A&0&0000", r"USB\ROOT_HUB30\4&1"]
+    with monkeypatch.context() as of_windows:
+        of_windows.setattr(usb_boards.here, "usb_devices", lambda: windows)
+        run(bench, "--target", "third")
+    assert bench.written() == {PROBE: "third_firmware"}
     attach(bench)
     run(bench, "--target", "third")
-    assert bench.written() == {PROBE: "third_firmware"}
     run(bench, "--target", "leader", status=1)
     text = capfd.readouterr().err
     assert "the board of 'leader' is not known: the system has 2 targets for such boards" in text

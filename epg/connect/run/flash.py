@@ -108,7 +108,7 @@ def _by_tool(job: Job, application: Application, flashing: Flashing, image: Path
     by_hand = flashing.by_hand or "connect its debug probe by USB"
     devices = attached(flashing.usb)
     if devices is None:
-        return Boards(problem="EPG lists attached boards on Linux only", hint=by_hand)
+        return Boards(problem="EPG lists attached boards on Linux and Windows only", hint=by_hand)
     if not devices:
         hint = f"{by_hand[0].upper()}{by_hand[1:]}, and look again"
         return Boards(problem="no board was found", hint=hint)

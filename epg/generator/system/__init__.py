@@ -85,6 +85,10 @@ class OperatingSystem(Protocol):
         """The folders of the drives that can be those of a boot program."""
         ...
 
+    def usb_devices(self) -> list[str] | None:
+        """The instance ids of Windows' attached USB devices, such as ``USB\\VID_0483&PID_374B\\0671FF``; else None."""
+        ...
+
     def start(
         self, command: Sequence[str], folder: Path, environment: Mapping[str, str], *, modest: bool, bound: bool
     ) -> Group:

@@ -24,6 +24,7 @@ _ACCOUNTING, _LIMITS, _KILL_ON_CLOSE = 1, 9, 0x2000  # JOBOBJECTINFOCLASS; JOB_O
 _LIMITS_SIZE, _LIMIT_FLAGS = 144, 16  # of JOBOBJECT_EXTENDED_LIMIT_INFORMATION on 64 bit, in bytes
 _ACCOUNTING_SIZE, _ACTIVE = 48, 40  # of JOBOBJECT_BASIC_ACCOUNTING_INFORMATION
 _REMOVABLE, _NO_DIALOGS = 2, 1
+_ATTACHED_OF_BUS = 0x101  # CM_GETIDLIST_FILTER_ENUMERATOR, CM_GETIDLIST_FILTER_PRESENT
 _LONGEST_END = 30  # seconds; Windows ends the program after 5 s to 20 s
 _kept: list[object] = []  # functions that Windows calls
 
@@ -111,6 +112,18 @@ def drives() -> list[Path]:
         if kernel.GetDriveTypeW(root) == _REMOVABLE
         and kernel.GetVolumeInformationW(root, None, 0, None, None, None, None, 0)
     ]
+
+
+def usb_devices() -> list[str] | None:
+    import ctypes
+
+    manager, size = _library("cfgmgr32"), ctypes.c_uint32()
+    if manager.CM_Get_Device_ID_List_SizeW(ctypes.byref(size), "USB", _ATTACHED_OF_BUS):
+        return None
+    names = ctypes.create_unicode_buffer(size.value)
+    if manager.CM_Get_Device_ID_ListW("USB", names, size, _ATTACHED_OF_BUS):
+        return None
+    return [name for name in "".join(names).split("\0") if name]
 
 
 class WindowsJob:

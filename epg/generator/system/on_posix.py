@@ -111,6 +111,10 @@ def quoted(command: Sequence[str]) -> str:
     return shlex.join(command)
 
 
+def usb_devices() -> None:
+    return None
+
+
 def drives() -> list[Path]:
     if sys.platform == "darwin":
         return sorted(Path("/Volumes").glob("*"))
