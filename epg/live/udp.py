@@ -44,6 +44,7 @@ _BEGIN, _END, _DISABLE = 1, 2, 4
 _RUNNING, _OVER, _DISABLED, _TAKEN, _ONCE, _LOCKED = 1, 2, 4, 8, 16, 64
 _BITS = 32
 _MODULO = 1 << 32
+_REFUSED = (ConnectionRefusedError, ConnectionResetError)  # no program has the port; the latter on Windows
 
 
 class PortTaken(PortError):
@@ -206,7 +207,7 @@ class UdpPort:
         self._confirm = False
         try:
             self._socket.send(self._seal.close(data) if self._seal is not None else data)
-        except ConnectionRefusedError as error:
+        except _REFUSED as error:
             raise self._gone() from error
         except OSError:
             pass
@@ -240,7 +241,7 @@ class UdpPort:
                 data = self._socket.recv(65536)
             except BlockingIOError:
                 return
-            except ConnectionRefusedError as error:
+            except _REFUSED as error:
                 raise self._gone() from error
             except OSError as error:
                 if self._running:
