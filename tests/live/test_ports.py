@@ -241,8 +241,8 @@ def test_rates_of_a_terminal_of_macos() -> None:
     """A rate that POSIX does not have is set by another request, which a terminal without wires refuses."""
     ours, theirs = os.openpty()
     name = Path(os.ttyname(theirs))
+    os.close(theirs)  # else the first user's claim to be alone would last longer than its port
     darwin.open_device(name, 115200).close()
     with pytest.raises(PortError, match="have no rate of 12345"):
         darwin.open_device(name, 12345)
     os.close(ours)
-    os.close(theirs)
