@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 from collections.abc import Mapping
 from pathlib import Path, PureWindowsPath
@@ -10,7 +11,10 @@ from typing import Any
 
 import pytest
 
-from epg.live.ports import PortError, UsbPort, darwin, registry, win32
+from epg.live.ports import PortError, UsbPort, darwin, linux, registry, win32
+
+TIOCGEXCL = 0x80045440
+"""A request of Linux: is a terminal claimed by one program?"""
 
 
 class Kernel:
@@ -241,8 +245,21 @@ def test_rates_of_a_terminal_of_macos() -> None:
     """A rate that POSIX does not have is set by another request, which a terminal without wires refuses."""
     ours, theirs = os.openpty()
     name = Path(os.ttyname(theirs))
-    os.close(theirs)  # else the first user's claim to be alone would last longer than its port
     darwin.open_device(name, 115200).close()
     with pytest.raises(PortError, match="have no rate of 12345"):
         darwin.open_device(name, 12345)
+    os.close(ours)
+    os.close(theirs)
+
+
+def test_a_pseudo_terminal_can_be_opened_again() -> None:
+    """Its other end stays open, so a claim to be alone would outlive the port: only root could open it again."""
+    ours, theirs = os.openpty()
+    name = Path(os.ttyname(theirs))
+    os.close(theirs)
+    for _ in range(2):
+        linux.open_device(name, 115200).close()
+        again = os.open(name, os.O_RDWR | os.O_NOCTTY)
+        assert fcntl.ioctl(again, TIOCGEXCL, bytes(4)) == bytes(4)
+        os.close(again)
     os.close(ours)

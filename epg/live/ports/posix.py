@@ -17,6 +17,8 @@ from typing import Any
 from epg.generator.install import remedy
 from epg.live.ports import PortError, full, gone, missing, wrong_rate
 
+_PSEUDO_TERMINALS = ("/dev/pts/", "/dev/ttys")  # of Linux and macOS
+
 
 class PosixPort:
     """An open terminal.  Messages name an ``example`` of a port, and the program that has this one, by ``user_of``."""
@@ -41,7 +43,8 @@ class PosixPort:
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
             raise self._taken() from error
-        fcntl.ioctl(self._file, termios.TIOCEXCL)
+        if not os.path.realpath(self._path).startswith(_PSEUDO_TERMINALS):  # which keep this claim for ever
+            fcntl.ioctl(self._file, termios.TIOCEXCL)
         tty.setraw(self._file, termios.TCSANOW)
         attributes = termios.tcgetattr(self._file)
         attributes[2] |= termios.CLOCAL | termios.CREAD
