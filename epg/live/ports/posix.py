@@ -43,7 +43,7 @@ class PosixPort:
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
             raise self._taken() from error
-        if not os.path.realpath(self._path).startswith(_PSEUDO_TERMINALS):  # which keep this claim for ever
+        if not os.path.realpath(self._path).startswith(_PSEUDO_TERMINALS):  # they keep this claim
             fcntl.ioctl(self._file, termios.TIOCEXCL)
         tty.setraw(self._file, termios.TCSANOW)
         attributes = termios.tcgetattr(self._file)
