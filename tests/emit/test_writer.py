@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from epg.cli.output import update_folder
+from epg.generator.emit.folder import write_folder
 from epg.generator.emit.writer import write_outputs
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -74,3 +75,13 @@ def test_a_link_that_leads_out_of_the_folder_is_no_bug_of_epg(tmp_path: Path) ->
     with pytest.raises(PermissionError, match="a link leads out of the output folder"):
         write_outputs(tmp_path / "out", {"a": "1"})
     assert not (tmp_path / "elsewhere").exists()
+
+
+def test_a_file_in_the_way_leaves_the_folder_as_it_was(tmp_path: Path) -> None:
+    """An empty folder of the user stays, too."""
+    (tmp_path / "robot/source").mkdir(parents=True)
+    (tmp_path / "robot/z.txt").write_text("mine")
+    with pytest.raises(FileExistsError):
+        write_folder(tmp_path / "robot", {"source/new/a.c": b"", "z.txt": b""})
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["robot", "source", "z.txt"]
+    assert (tmp_path / "robot/z.txt").read_text() == "mine"
