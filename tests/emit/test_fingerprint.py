@@ -151,6 +151,11 @@ def test_stored_parameters_belong_to_a_model_and_its_values(tmp_path: Path) -> N
     folder = copy(tmp_path / "jiwy")
     model = model_of(generate(folder))
     assert model_of(generate(folder, "node=other", "components.pwm_pan.max_duty=0.9")) == model
+    source = folder / "model/xxsubmod.c"
+    written = source.read_text()
+    source.write_text(f"{written}/* something */\n")
+    assert model_of(generate(folder)) != model
+    source.write_text(written)
     bindings = folder / "jiwy.bindings.yaml"
     bindings.write_text(bindings.read_text() + "parameters:\n  Pan\\PID\\kp: 2.5\n")
     assert model_of(generate(folder)) != model
