@@ -34,7 +34,7 @@ from epg.generator.resolve.application import Application
 from epg.generator.source import Span
 from epg.generator.tools.find_tool import Surroundings, find_tool
 from epg.generator.tools.tools import Tool, load_tools
-from epg.generator.tools.usb_boards import UsbDevice, attached
+from epg.generator.tools.usb_boards import NOT_LISTED, UsbDevice, attached
 from epg.runs.robot import Robot, robot_of
 from epg.system.check_system import CheckedSystem
 from epg.system.images import built_hash, image_file, images_of
@@ -199,7 +199,7 @@ def _board(
     if len(rivals) > 1:
         reason = f"the system has {len(rivals)} targets for such boards"
     elif devices is None:
-        reason = "EPG lists attached boards on Linux and Windows only"
+        reason = NOT_LISTED
     else:
         reason = f"{len(devices) or 'no'} fitting boards are attached"
     hint = f"write '{flashing.named_by}: <serial number>' for it in the system file{_listed(devices, flashing)}"

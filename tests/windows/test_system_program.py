@@ -16,7 +16,7 @@ import pytest
 from tests.cmake.project import Project, copy_jiwy, snapshot
 from tests.platforms.host.program import HOST, TARGETS, WARNINGS, include_folders
 from tests.windows.computer import GCC, Computer
-from tests.windows.test_host_program import needs_wine, needs_zig
+from tests.windows.test_host_program import MACH_O, needs_wine, needs_zig
 
 SIMULATED = TARGETS / "platforms/simulated"
 SYSTEM = """version: 1
@@ -161,4 +161,4 @@ def test_macos(machine: str, tmp_path: Path) -> None:
     settings = ("-DCMAKE_SYSTEM_NAME=Darwin", f"-DCMAKE_SYSTEM_PROCESSOR={machine}", *tools)
     build = built(tmp_path, *settings, more=HOST_PROGRAM).build_folder
     for name in ("jiwy_host", "two", "two_leader_unit.so", "two_leader_plant_unit.so", "two_follower_unit.so"):
-        assert (build / name).read_bytes()[:4] == bytes.fromhex("cffaedfe")  # Mach-O, 64 bit
+        assert (build / name).read_bytes()[:4] == MACH_O

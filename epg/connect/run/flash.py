@@ -27,7 +27,7 @@ from epg.generator.tools.find_tool import Surroundings
 from epg.generator.tools.remedy import command_for
 from epg.generator.tools.tools import load_tools
 from epg.generator.tools.uf2_drives import Uf2Drive, copy_to_drive, uf2_drives
-from epg.generator.tools.usb_boards import attached
+from epg.generator.tools.usb_boards import NOT_LISTED, attached
 from epg.system import flash
 
 _NO_ACCESS = re.compile(r"LIBUSB_ERROR_ACCESS|was unable to connect|ermission denied", re.IGNORECASE)
@@ -108,7 +108,7 @@ def _by_tool(job: Job, application: Application, flashing: Flashing, image: Path
     by_hand = flashing.by_hand or "connect its debug probe by USB"
     devices = attached(flashing.usb)
     if devices is None:
-        return Boards(problem="EPG lists attached boards on Linux and Windows only", hint=by_hand)
+        return Boards(problem=NOT_LISTED, hint=by_hand)
     if not devices:
         hint = f"{by_hand[0].upper()}{by_hand[1:]}, and look again"
         return Boards(problem="no board was found", hint=hint)

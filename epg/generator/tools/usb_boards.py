@@ -12,6 +12,8 @@ from epg.generator.system import here
 
 DEVICES = Path("/sys/bus/usb/devices")
 """The folder in which Linux has a folder for each USB device."""
+NOT_LISTED = "EPG lists attached boards on Linux and Windows only"
+"""Says why :func:`attached` returns None."""
 
 
 @dataclass(frozen=True)

@@ -43,7 +43,7 @@ function(_epg_simulated_module module symbol library)
   set(link "-Wl,--exclude-libs,ALL,-Bsymbolic,-z,defs")
   set(exported "visibility(\"default\")")
   if(WIN32)
-    set(link -static-libgcc) # like the program, it needs no library in the folders of GCC
+    set(link -static-libgcc) # then the shared object finds all libraries without the folders of GCC
     set(exported dllexport)
   elseif(APPLE)
     set(link "-Wl,-exported_symbol,_${symbol}")

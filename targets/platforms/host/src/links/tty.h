@@ -22,7 +22,7 @@ bool epg_host_tty_is_there(int file);
 long epg_host_tty_read(int file, void *data, size_t size);
 
 /**
- * Writes bytes.  Returns the number of those at the begin of `data` that are written, or -1 if the port is gone.  The
+ * Writes bytes.  Returns the number of those at the start of `data` that are written, or -1 if the port is gone.  The
  * others must stay in their place until a later call, which begins with them, has returned their number.
  */
 long epg_host_tty_write(int file, const void *data, size_t size);

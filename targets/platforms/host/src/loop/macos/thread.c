@@ -17,7 +17,7 @@ bool epg_host_thread_prepare(void)
     return false; /* macOS locks single pages only */
 }
 
-/** Gives the thread half of each period.  This needs no permission. */
+/** Asks the kernel for half of each period.  The user needs no permission for that. */
 static bool constrain(const epg_host_thread_t *self, uint64_t period_ns)
 {
     const uint64_t half_ns = period_ns / 2;
