@@ -76,7 +76,7 @@ function(_epg_model_library name output instances)
   if(DEFINED EPG_${name}_FOREIGN)
     _epg_link_model("${name}" "${output}" ${exported})
   endif()
-  if(WIN32 OR APPLE)
+  if(APPLE)
     _epg_model_without_variables(objects variables "${name}")
   else()
     _epg_model_variables(objects variables "${name}" "${instances}" ${exported})
@@ -251,7 +251,7 @@ endfunction()
 
 # _epg_model_without_variables(<objects> <table> <name>)
 #
-# Replaces _epg_model_variables() where object files do not have the format ELF, and warns once.
+# Replaces _epg_model_variables() on macOS, whose linker moves each variable alone, and warns once.
 function(_epg_model_without_variables objects table name)
   get_property(warned GLOBAL PROPERTY EPG_WARNED_OF_VARIABLES)
   if(NOT warned)

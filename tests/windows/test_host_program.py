@@ -37,13 +37,21 @@ def options(system: str) -> list[str]:
     return ["-std=c11", *WARNINGS, *defines, *(f"-I{folder}" for folder in include_folders(system))]
 
 
+def cmake(*words: str) -> None:
+    done = subprocess.run(["cmake", *words], capture_output=True, text=True, check=False)
+    assert done.returncode == 0 and "warning" not in done.stderr.lower(), done.stderr
+
+
+def to_windows(project: str, folder: Path) -> tuple[str, ...]:
+    """CMake's words that configure a project for Windows, with the compiler of Debian."""
+    settings = ("-DCMAKE_SYSTEM_NAME=Windows", f"-DCMAKE_C_COMPILER={GCC}", f"-DPython3_EXECUTABLE={sys.executable}")
+    return "-S", str(ROOT / project), "-B", str(folder), *settings
+
+
 def build(project: str, folder: Path) -> Path:
     """JIWY, built by CMake of this computer for Windows."""
-    settings = ("-DCMAKE_SYSTEM_NAME=Windows", f"-DCMAKE_C_COMPILER={GCC}", f"-DPython3_EXECUTABLE={sys.executable}")
-    configure = ["-S", str(ROOT / project), "-B", str(folder), *settings]
-    for command in (configure, ["--build", str(folder), "-j2", "--target", "jiwy_host"]):
-        done = subprocess.run(["cmake", *command], capture_output=True, text=True, check=False)
-        assert done.returncode == 0 and "warning:" not in done.stderr, done.stderr
+    cmake(*to_windows(project, folder))
+    cmake("--build", str(folder), "-j2", "--target", "jiwy_host")
     return folder / "jiwy_host.exe"
 
 
@@ -109,6 +117,19 @@ def test_the_console_by_udp(computer: Computer, program: Path) -> None:
             client.stop()
     process.kill()
     threading.Thread(target=process.communicate).start()
+
+
+@needs_wine
+def test_a_model_that_is_initialised_again(computer: Computer) -> None:
+    """Its second run is the first: the variables of C and C++ are found in object files of Windows."""
+    folder = computer.folder / "restart"
+    places = (f"-DEXAMPLES={ROOT / 'examples'}", f"-DWORN={ROOT / 'tests/models/worn'}", f"-DEPG_DIR={ROOT / 'cmake'}")
+    cpp = (f"-DCMAKE_CXX_COMPILER={GCC.replace('gcc', 'g++')}", "-DCMAKE_EXE_LINKER_FLAGS=-static")
+    cmake(*to_windows("tests/cmake/projects/restart", folder), *places, *cpp)
+    cmake("--build", str(folder), "-j2", "--target", "twice")
+    done = computer.run(folder / "twice.exe")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert len(done.stdout.splitlines()) == 2
 
 
 @needs_wine

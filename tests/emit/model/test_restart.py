@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from epg.generator.diagnostics import Diagnostics, UserError
-from epg.generator.documents.object_file import ObjectFile
+from epg.generator.documents.object_file import read_object_file
 from epg.generator.emit.model.variables import model_variables
 from tests.doubles.twenty_sim.exports import Export
 from tests.models.fmus import FMU2, FMU3, changed, pack
@@ -239,7 +239,7 @@ def test_a_variable_that_all_instances_share(tmp_path: Path) -> None:
 
 
 def test_an_object_file_of_link_time_optimisation(tmp_path: Path) -> None:
-    """GCC's has the format ELF, but no variables: their names are in a section of their own."""
+    """GCC's has the usual format, but no variables: their names are in a section of their own."""
     source = tmp_path / "model.c"
     source.write_text("int counted; int count(void) { return ++counted; }")
     made = compile_file(source, tmp_path / "model.o", ["-flto"], "c")
@@ -283,8 +283,10 @@ def test_destructors_do_not_pile_up(tmp_path: Path) -> None:
         ("arm-none-eabi-", ["-mcpu=cortex-m0plus", "-mthumb"], {".bss"}),
         ("arm-none-eabi-", ["-mcpu=cortex-m7", "-mthumb", "-mbig-endian"], {".bss"}),
         ("riscv64-unknown-elf-", ["-march=rv32imac", "-mabi=ilp32"], {".sbss"}),
+        ("x86_64-w64-mingw32-", [], {".bss"}),
+        ("i686-w64-mingw32-", [], {".bss"}),
     ],
-    ids=["host", "data-sections", "arm", "big-endian", "riscv"],
+    ids=["host", "data-sections", "arm", "big-endian", "riscv", "windows", "windows-32"],
 )
 def test_the_sections_of_each_compiler(prefix: str, options: list[str], zero: set[str], tmp_path: Path) -> None:
     """All variables are in the table, and the linker knows the symbols of their sections."""
@@ -294,13 +296,13 @@ def test_the_sections_of_each_compiler(prefix: str, options: list[str], zero: se
     run([f"{prefix}gcc", *options, "-fno-common", "-O2", "-c", str(MODELS / "worn/wear.c"), "-o", str(made)])
     (copied,), table = model_variables("pan", 1, [made], Diagnostics())
     copy.write_bytes(copied)
-    sections = ObjectFile(made.read_bytes()).sections()
+    sections = read_object_file(made.read_bytes()).sections()
     assert {re.sub(r"\.\d+$", "", section.name) for section in sections if section.zero} == zero
-    names = {variable.name for section in sections for variable in ObjectFile(copied).variables(section.number)}
+    names = {variable.name for section in sections for variable in read_object_file(copied).variables(section.number)}
     assert {"table", "total", "newest", "odd", "letters"} <= names
     sizes = [section.size for section in sections if not section.zero]
     assert f"{sum(section.size for section in sections)} bytes, of which {sum(-(-s // 4) * 4 for s in sizes)}" in table
     linked = tmp_path / "linked.o"
     run([f"{prefix}gcc", *options, "-r", "-nostdlib", str(copy), "-o", str(linked)])
-    symbols = re.findall(r"(\w+) \w (pan_export_section_0_\d+)", run([f"{prefix}nm", str(linked)]))
+    symbols = re.findall(r"(\w+) \w _?(pan_export_section_0_\d+)", run([f"{prefix}nm", str(linked)]))
     assert sorted(name for _, name in symbols) == sorted(f"pan_export_section_0_{s.number}" for s in sections)

@@ -19,7 +19,8 @@ from tempfile import TemporaryDirectory
 
 from epg.generator.dataclass import dataclass
 from epg.generator.diagnostics import Diagnostics, Note
-from epg.generator.documents.object_file import NotAnObjectFile, program_memory
+from epg.generator.documents.elf_file import program_memory
+from epg.generator.documents.object_file import NotAnObjectFile
 from epg.generator.source import Span
 
 _ERROR = re.compile(r"^(.+?):(\d+):(?:(\d+):)? (?:fatal )?error: (.+)$", re.MULTILINE)

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from epg.generator.dataclass import dataclass
 from epg.generator.diagnostics import Diagnostics
-from epg.generator.documents.object_file import NotAnObjectFile, ObjectFile, ObjectVariable, Section
+from epg.generator.documents.object_file import NotAnObjectFile, ObjectFile, ObjectVariable, Section, read_object_file
 from epg.generator.emit.template import environment
 from epg.generator.emit.text import Code
 from epg.generator.source import Span
@@ -64,7 +64,7 @@ def model_variables(
 
 def _read(path: Path, diagnostics: Diagnostics) -> ObjectFile | None:
     try:
-        return ObjectFile(path.read_bytes())
+        return read_object_file(path.read_bytes())
     except NotAnObjectFile as problem:
         _refuse(path, f"EPG cannot find its variables, because {problem}", _FORMAT_HINT, diagnostics)
         return None
@@ -76,19 +76,22 @@ def _check(path: Path, file: ObjectFile, prefix: str, instances: int, diagnostic
         problem = f"the linker can join variable '{_written(variable, prefix)}' with one of other code"
         _refuse(path, problem, "take -fcommon out of the options of the compiler", diagnostics)
     for section in file.sections():
-        variables = file.variables(section.number)
-        if section.separate:
-            problem, hint = "exists once for each thread", "make it an ordinary static variable"
-        elif section.shared:
-            problem, hint = "can be the same as one of other code", "make it static, or const"
-        elif instances > 1:
-            variables = [v for v in variables if not _has(v, _OF_INSTANCES) and not v.name.startswith(_OF_COMPILER)]
-            problem = "belongs to all instances, so the start of one of them would change the others"
-            hint = "make it a member of the instance, or const; or make one instance"
-        else:
-            continue
-        for variable in variables:
-            _refuse(path, f"variable '{_written(variable, prefix)}' {problem}", hint, diagnostics)
+        for variable in file.variables(section.number):
+            if reason := _reason(section, variable, instances):
+                problem, hint = reason
+                _refuse(path, f"variable '{_written(variable, prefix)}' {problem}", hint, diagnostics)
+
+
+def _reason(section: Section, variable: ObjectVariable, instances: int) -> tuple[str, str] | None:
+    """Why a variable cannot be restored, and a hint; or None."""
+    if variable.separate:
+        return "exists once for each thread", "make it an ordinary static variable"
+    if section.shared:
+        return "can be the same as one of other code", "make it static, or const"
+    if instances == 1 or _has(variable, _OF_INSTANCES) or variable.name.startswith(_OF_COMPILER):
+        return None
+    problem = "belongs to all instances, so the start of one of them would change the others"
+    return problem, "make it a member of the instance, or const; or make one instance"
 
 
 _FORMAT_HINT = "compile the model with GCC or Clang, and without link-time optimisation (-flto)"

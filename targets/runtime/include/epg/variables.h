@@ -17,6 +17,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/** Marks the symbol at the start of a section.  Weak: the linker leaves out object files that the program does not need. */
+#ifdef __ELF__
+#define EPG_SECTION_START __attribute__((weak, visibility("hidden")))
+#else
+#define EPG_SECTION_START __attribute__((weak))
+#endif
+
 /** A part of a section. */
 typedef struct epg_region {
     unsigned char *section; /**< NULL if the program does not contain the section */
