@@ -369,6 +369,9 @@ class Client:
         except PortError as error:
             self._lost = str(error)
             self._told(f"lost {error}")
+        except Exception as error:
+            self._lost = f"EPG cannot read from the target: {error!r}"
+            raise
         finally:
             self._over.set()
             for answer in list(self._answers.values()):

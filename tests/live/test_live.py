@@ -135,6 +135,21 @@ def test_a_port_without_a_target_is_not_a_target(tmp_path: Path) -> None:
             SerialPort(path)
 
 
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_the_reason_why_reading_ended_is_told(target: Target) -> None:
+    """The thread that reads has met an exception that nobody expected."""
+
+    def told(line: str) -> None:
+        raise ValueError(line)
+
+    with SerialPort(target.port) as port:
+        client = Client(port, told)
+        with pytest.raises(Lost, match=r"EPG cannot read from the target: ValueError\('state enabled=0"):
+            while True:
+                client.disable()
+        client.stop()
+
+
 # Leases
 
 
