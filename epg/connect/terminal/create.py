@@ -14,7 +14,7 @@ from epg.connect.terminal.message import say_refused
 from epg.new.new_project import project_name
 
 WAIT = 60.0
-"""Seconds to wait for the list of configurations; reading it takes about one."""
+"""Seconds between two looks at the list of configurations; reading it takes about one."""
 
 PredefinedData = Mapping[str, Any]
 
@@ -28,10 +28,7 @@ def create_project(session: Session, console: Console) -> None:
     state = session.state()
     while not state["configurations"]:
         console.over("reading the configurations ...")
-        before = state["version"]
-        state = session.wait(before, WAIT)
-        if state["version"] == before:
-            raise Left
+        state = session.wait(state["version"], WAIT)
     model = state["model"]
     if model is None:
         for problem in state["diagnostics"]:

@@ -52,15 +52,17 @@ def test_large_model(large: Served, open_page: Open) -> None:
     assert page.locator(".ports .port").count() == 2 * PORTS
     assert page.locator(".component .port").count() == 2 * COMPONENTS
 
-    # Every move of a dragged end draws every wire; every new state draws the whole page.
-    draw = page.evaluate(
+    # Every move of a dragged end draws every wire; every new state draws the whole page.  Both times are the shortest of
+    # some, so that other programs on this computer do not count.
+    draw, copy = page.evaluate(
         "(async () => { const { draw } = await import(new URL('ui.js', location)); draw();"
+        " const shortest = (act) => Math.min(...Array.from({ length: 9 }, () => {"
         # the time that a user sees
-        " const times = []; for (let n = 0; n < 5; n++) { const start = performance.now(); draw();"
-        # the time that a user sees
-        " times.push(performance.now() - start); } return times.sort((a, b) => a - b)[2]; })()"
+        " const start = performance.now(); act(); return performance.now() - start; }));"
+        " return [shortest(draw), shortest(() => document.body.cloneNode(true))]; })()"
     )
-    assert draw < 100, f"{draw:.0f} ms for drawing the page once"
+    print(f"{draw:.1f} ms for drawing the page, {copy:.1f} ms for a copy of its elements")
+    assert draw < 4 * copy, f"{draw:.1f} ms for drawing the page, {copy:.1f} ms for a copy of its elements"
 
     # Ports out of sight can be reached: the diagram scrolls while an end is held at its edge.
     last = f"out_{PORTS - 1}"
