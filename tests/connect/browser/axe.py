@@ -11,7 +11,7 @@ from tests.doubles.toolchain import npm_package
 
 HERE = Path(__file__).resolve().parent
 CONTRAST = "runOnly: {type: 'rule', values: ['color-contrast']}"
-"""The only rule that tells dark mode, and values that are old, from others: these change only colours."""
+"""The only rule for dark mode, which changes only colours."""
 
 
 def axe_core() -> Path:

@@ -52,8 +52,8 @@ def test_large_model(large: Served, open_page: Open) -> None:
     assert page.locator(".ports .port").count() == 2 * PORTS
     assert page.locator(".component .port").count() == 2 * COMPONENTS
 
-    # Every move of a dragged end draws every wire; every new state draws the whole page.  Both times are the shortest of
-    # some, so that other programs on this computer do not count.
+    # Every move of a dragged end draws every wire; every new state draws the whole page.  Other programs make both
+    # times longer.
     draw, copy = page.evaluate(
         "(async () => { const { draw } = await import(new URL('ui.js', location)); draw();"
         " const shortest = (act) => Math.min(...Array.from({ length: 9 }, () => {"
