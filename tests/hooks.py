@@ -52,6 +52,13 @@ def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
 
 
 @pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup() -> None:
+    """Skips a test if the time of tests/run.py is over: then the file that ``EPG_TESTS_OVER`` names exists."""
+    if os.path.exists(os.environ.get("EPG_TESTS_OVER", "")):
+        pytest.skip("the time of this run is over")
+
+
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Marks every test with its tier: ``-m check_all`` then selects that tier.
 

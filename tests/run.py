@@ -11,7 +11,8 @@ It also runs tests alone, with the packages that the targets use::
     python tests/run.py "tests/cli/test_doctor.py::test_it_ends"
 
 ``check_all`` also runs the tests of ``check``.  Exit code 0 means that every test passed or was skipped.  If the
-environment variable ``EPG_EXPECTED_SKIPS`` names a file, that file must also list every reason for a skip.
+environment variable ``EPG_EXPECTED_SKIPS`` names a file, that file must also list every reason for a skip.  After
+``EPG_TEST_MINUTES`` minutes, tests that have not begun are skipped.
 ``--write-costs tests/costs.txt`` records the CPU time of each file.  Later runs use it to order and group the files.
 """
 
@@ -113,7 +114,13 @@ def main(arguments: list[str]) -> int:
         return _run_alone(options.tier)
     log = options.build / "outcomes.jsonl"
     log.unlink(missing_ok=True)
-    environment = {**os.environ, "EPG_TEST_LOG": str(log)}
+    over = (options.build / "over").resolve()
+    over.unlink(missing_ok=True)
+    environment = {**os.environ, "EPG_TEST_LOG": str(log), "EPG_TESTS_OVER": str(over)}
+    if minutes := os.environ.get("EPG_TEST_MINUTES"):
+        timer = threading.Timer(60 * float(minutes), over.touch)
+        timer.daemon = True
+        timer.start()
     command = [options.ctest, "--output-on-failure", "--parallel", str(options.jobs), "--no-tests=error"]
     command += ["--label-regex", LABELS[options.tier]]
     progress = Progress()

@@ -157,6 +157,17 @@ def test_programs_that_run_in_real_time_have_a_better_priority_if_the_user_may_g
     assert priority("a", "c") == priority() == own
 
 
+def test_a_run_whose_time_is_over_skips_its_tests(tmp_path: Path) -> None:
+    log, over = tmp_path / "log", tmp_path / "over"
+    test = "tests/test_tiers.py::test_every_cost_is_of_a_file_in_its_tier"
+    environment = {**os.environ, "EPG_TEST_LOG": str(log), "EPG_TESTS_OVER": str(over)}
+    for _ in range(2):
+        command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", test]
+        subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, check=True)
+        over.touch()
+    assert [outcome.skipped for outcome in read_log(log)] == ["", "the time of this run is over"]
+
+
 def test_every_file_is_in_a_group_of_each_of_its_tiers() -> None:
     tiers = table()
     made = groups(FILES, tiers, {})
