@@ -65,11 +65,3 @@ class ObjectFile(Protocol):
 
         ``replaced`` are names of functions of other files, and the names of those that the copy calls instead.
         """
-
-
-def read_object_file(data: bytes) -> ObjectFile:
-    """The object file with the content ``data``.  Raises :class:`NotAnObjectFile`."""
-    from epg.generator.documents.coff_file import MACHINES, CoffObject
-    from epg.generator.documents.elf_file import ElfObject
-
-    return CoffObject(data) if data[:2] in MACHINES else ElfObject(data)

@@ -14,7 +14,8 @@ from pathlib import Path
 import pytest
 
 from epg.generator.diagnostics import Diagnostics, UserError
-from epg.generator.documents.object_file import read_object_file
+from epg.generator.documents.coff_file import CoffObject
+from epg.generator.documents.elf_file import ElfObject
 from epg.generator.emit.model.variables import model_variables
 from tests.doubles.twenty_sim.exports import Export
 from tests.models.fmus import FMU2, FMU3, changed, pack
@@ -296,9 +297,10 @@ def test_the_sections_of_each_compiler(prefix: str, options: list[str], zero: se
     run([f"{prefix}gcc", *options, "-fno-common", "-O2", "-c", str(MODELS / "worn/wear.c"), "-o", str(made)])
     (copied,), table = model_variables("pan", 1, [made], Diagnostics())
     copy.write_bytes(copied)
-    sections = read_object_file(made.read_bytes()).sections()
+    read = CoffObject if "mingw" in prefix else ElfObject
+    sections = read(made.read_bytes()).sections()
     assert {re.sub(r"\.\d+$", "", section.name) for section in sections if section.zero} == zero
-    names = {variable.name for section in sections for variable in read_object_file(copied).variables(section.number)}
+    names = {variable.name for section in sections for variable in read(copied).variables(section.number)}
     assert {"table", "total", "newest", "odd", "letters"} <= names
     sizes = [section.size for section in sections if not section.zero]
     assert f"{sum(section.size for section in sections)} bytes, of which {sum(-(-s // 4) * 4 for s in sizes)}" in table

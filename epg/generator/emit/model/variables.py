@@ -16,7 +16,9 @@ from pathlib import Path
 
 from epg.generator.dataclass import dataclass
 from epg.generator.diagnostics import Diagnostics
-from epg.generator.documents.object_file import NotAnObjectFile, ObjectFile, ObjectVariable, Section, read_object_file
+from epg.generator.documents.coff_file import MACHINES, CoffObject
+from epg.generator.documents.elf_file import ElfObject
+from epg.generator.documents.object_file import NotAnObjectFile, ObjectFile, ObjectVariable, Section
 from epg.generator.emit.template import environment
 from epg.generator.emit.text import Code
 from epg.generator.source import Span
@@ -63,8 +65,9 @@ def model_variables(
 
 
 def _read(path: Path, diagnostics: Diagnostics) -> ObjectFile | None:
+    data = path.read_bytes()
     try:
-        return read_object_file(path.read_bytes())
+        return CoffObject(data) if data[:2] in MACHINES else ElfObject(data)
     except NotAnObjectFile as problem:
         _refuse(path, f"EPG cannot find its variables, because {problem}", _FORMAT_HINT, diagnostics)
         return None
