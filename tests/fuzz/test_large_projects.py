@@ -3,21 +3,23 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
 
 from tests.fuzz.long_run import LONG
-from tests.fuzz.project import Project
+from tests.fuzz.project import Outcome, Project
 from tests.fuzz.robots import ARGUMENTS
 
 COUNT = 10_000 if LONG else 2_000
-SECONDS = COUNT / 800  # of processor time; a quadratic algorithm takes several times that
+SECONDS = COUNT / 20
+"""A limit of processor time for runs that do not end."""
 
 
-def project() -> dict[str, bytes]:
+def project(count: int) -> dict[str, bytes]:
     """One constant for each input of a model, and the same number of parameters."""
-    numbers = range(COUNT)
+    numbers = range(count)
     components = "".join(f"  c{i}: {{kind: constant, value: {i}}}\n" for i in numbers)
     inputs = "".join(f"  p{i}: {{}}\n" for i in numbers)
     parameters = "".join(f"  q{i}: {i}\n" for i in numbers)
@@ -44,8 +46,31 @@ def project() -> dict[str, bytes]:
     }
 
 
+def check_proportional(folder: Path, file: str = "", old: str = "", new: str = "") -> Outcome:
+    """Generates from projects of two sizes, in whose ``file`` ``new`` replaces ``old``, and compares their times.
+
+    Four times the size takes at most four times as long, but 16 times if an algorithm is quadratic.  Before and after
+    the large project, a small one shows how fast this computer is.
+    """
+
+    def run(count: int) -> tuple[float, Outcome]:
+        files = project(count)
+        if file:
+            files[file] = files[file].replace(old.encode(), new.encode())
+        made = Project(folder / "p", files, ARGUMENTS)
+        began = os.times().user
+        outcome = made.generate(SECONDS)
+        return os.times().user - began, outcome
+
+    before, _ = run(COUNT // 4)
+    took, outcome = run(COUNT)
+    after, _ = run(COUNT // 4)
+    assert took < 8 * max(before, after), f"{before:.2f} s, {took:.2f} s, {after:.2f} s"
+    return outcome
+
+
 def test_right(tmp_path: Path) -> None:
-    outcome = Project(tmp_path / "p", project(), ARGUMENTS).generate(SECONDS)
+    outcome = check_proportional(tmp_path)
     assert outcome.good, outcome.errors[:3]
 
 
@@ -68,8 +93,5 @@ def test_right(tmp_path: Path) -> None:
     ids=str,
 )
 def test_everything_wrong(file: str, old: str, new: str, tmp_path: Path) -> None:
-    files = project()
-    outcome = Project(
-        tmp_path / "p", files | {file: files[file].replace(old.encode(), new.encode())}, ARGUMENTS
-    ).generate(SECONDS)
+    outcome = check_proportional(tmp_path, file, old, new)
     assert not outcome.good
