@@ -556,7 +556,7 @@ class User:
         expect_no_warning(run("cmake.exe", "-S", "examples/jiwy", "-B", build, *settings))
         expect_no_warning(run("cmake.exe", "--build", build, "--target", "tracking"))
         if not (home / "build/tracking.csv").is_file():
-            raise RuntimeError("there is no tracking.csv")
+            raise RuntimeError("the build wrote no tracking.csv")
         return "built and simulated"
 
     def command_file(self) -> str:

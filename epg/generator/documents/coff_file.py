@@ -71,7 +71,7 @@ class CoffObject:
         return any(self._text(header[0]).startswith((".ctors", ".CRT$XC")) for header in self._headers if header[3])
 
     def variables(self, section: int) -> list[ObjectVariable]:
-        """A symbol has no size: a variable ends where the next one begins, with the gap between them."""
+        """COFF has no sizes of variables: each one extends to the next one, and the gap before that counts."""
         header = self._headers[section - 1]
         places = {
             self._name(symbol): symbol.value

@@ -61,7 +61,6 @@ def test_large_model(large: Served, open_page: Open) -> None:
         " const start = performance.now(); act(); return performance.now() - start; }));"
         " return [shortest(draw), shortest(() => document.body.cloneNode(true))]; })()"
     )
-    print(f"{draw:.1f} ms for drawing the page, {copy:.1f} ms for a copy of its elements")
     assert draw < 4 * copy, f"{draw:.1f} ms for drawing the page, {copy:.1f} ms for a copy of its elements"
 
     # Ports out of sight can be reached: the diagram scrolls while an end is held at its edge.
